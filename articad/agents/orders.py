@@ -1,14 +1,16 @@
-"""Who made a fault between two parts: a script that departs from its order, or the plan that ordered it.
+"""Who made a fault between parts: a script that departs from its order, or the plan that ordered it.
 
 Decided by proof, from the round surfaces about the axes of joints and from the probe of dimensions. A script departs if a dimension of its
-part has no effect, or if a bore or pin about a joint's axis has a diameter that none of its dimensions states. If both surfaces of each
-joint between the parts have the diameters that were ordered, the plan is wrong. Everything else stays open.
+part has no effect, or if a bore or pin about a joint's axis has a diameter that none of its dimensions states. What else is wrong about
+such a part may follow from that, so it waits for the script. If a fit is off by just what both surfaces differ, and both have the
+diameters that were ordered, the plan is wrong. Everything else stays open.
 """
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple
 
@@ -25,11 +27,13 @@ from articad.realisation.sides import sides
 
 __all__ = ["addressed", "source_of"]
 
-_CODES: Final = frozenset({"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
+_FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
+_CODES: Final = _FITS | {"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FLOATING", "E_NOT_TOUCHING"}
 _ROUND: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
 _ON_AXIS_MM: Final = 0.2  # a surface whose axis is farther away is not about the joint's axis
 _ALIKE: Final = 0.3  # difference of radii, as a share of the larger
 _ROUNDING_MM: Final = 0.005  # of a diameter
+_PLAY_MM: Final = 0.02  # difference of a measured gap and that of the surfaces
 _CLEARANCE: Final = re.compile(r"clearance|play|gap|slack|tolerance|allowance")
 
 
@@ -46,14 +50,18 @@ def addressed(findings: Iterable[Finding], assembly: Assembly) -> Findings:
     """Send each error about two parts to whoever made it, where the parts prove it; others keep their route.
 
     Args:
-        findings: Of an examination of the assembly; the route of a root cause is kept, unless a dimension has no effect.
+        findings: Of an examination of the assembly.
         assembly: A product that was built from a plan.
     """
-    resolved = assembly.resolved
-    if resolved is None:
-        return Findings(findings)
+    several = tuple(findings)
+    pairs = {frozenset(finding.parts) for finding in several if finding.code in _CODES and len(finding.parts) == 2}
+    if assembly.resolved is None or not pairs:
+        return Findings(several)
+    joints = [joint for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs and joint.type in _ROUND]
     scene = assembly.scene()
-    return Findings(_addressed(finding, assembly, resolved, scene) for finding in findings)
+    surfaces = {joint.name: _mating(scene, joint) for joint in joints}
+    departed = _departed(assembly, assembly.resolved, set().union(*pairs), surfaces)
+    return Findings(_addressed(finding, assembly.resolved, departed, joints, surfaces) for finding in several)
 
 
 def source_of(name: str, resolved: ResolvedPlan) -> str:
@@ -63,33 +71,50 @@ def source_of(name: str, resolved: ResolvedPlan) -> str:
     return name
 
 
-def _addressed(finding: Finding, assembly: Assembly, resolved: ResolvedPlan, scene: Scene) -> Finding:
-    if finding.code not in _CODES or len(finding.parts) != 2:
-        return finding
-    for name in finding.parts:
-        source = source_of(name, resolved)
+def _departed(assembly: Assembly, resolved: ResolvedPlan, parts: Iterable[str], surfaces: Mapping[str, Sequence[_Round]]) -> dict[str, str]:
+    """Return why scripts depart from their orders, by the part that has the script."""
+    found: dict[str, str] = {}
+    for source in sorted({source_of(name, resolved) for name in parts}):
         unused = assembly.realised[source].findings.of("W_DIMENSION_UNUSED")
         if unused:
-            return _to_script(finding, source, f"{source} does not follow its dimension {unused[0].where.rsplit('.', 1)[-1]!r}.")
-    if finding.cause is not None:
-        return finding
-    joints = [joint for joint in assembly.joints if {joint.parent, joint.child} == set(finding.parts) and joint.type in _ROUND]
-    proven = bool(joints)
-    for joint in joints:
-        surfaces = _mating(scene, joint)
-        for one in surfaces:
+            found[source] = f"{source} does not follow its dimension {unused[0].where.rsplit('.', 1)[-1]!r}."
+    for joint, round_ones in surfaces.items():
+        for one in round_ones:
             source = source_of(one.part, resolved)
             if not _is_stated(one, resolved.parts[source].dimensions):
                 what = "bore" if one.hollow else "pin"
-                message = f"The {what} of {source} about the axis of {joint.name!r} has a diameter of {one.diameter:.4g} mm, which none of its dimensions states."
-                return _to_script(finding, source, message)
-        proven = proven and bool(surfaces)
-    return replace(finding, route="design") if proven else finding
+                found.setdefault(
+                    source,
+                    f"The {what} of {source} about the axis of {joint!r} has a diameter of {one.diameter:.4g} mm, "
+                    "which none of its dimensions states.",
+                )
+    return found
 
 
-def _to_script(finding: Finding, part: str, reason: str) -> Finding:
-    hint = f"{reason} Build {part} as its specification states."
-    return replace(finding, route="code", where=f"parts.{part}", hint=hint)
+def _addressed(
+    finding: Finding,
+    resolved: ResolvedPlan,
+    departed: Mapping[str, str],
+    joints: Iterable[Joint],
+    surfaces: Mapping[str, Sequence[_Round]],
+) -> Finding:
+    is_decided = finding.cause is not None and finding.route == "code"
+    if finding.code not in _CODES or is_decided:
+        return finding
+    guilty = [source for name in finding.parts if (source := source_of(name, resolved)) in departed]
+    if guilty:
+        hint = f"{departed[guilty[0]]} Build {guilty[0]} as its specification states."
+        return replace(finding, route="code", where=f"parts.{guilty[0]}", hint=hint)
+    between = [joint.name for joint in joints if {joint.parent, joint.child} == set(finding.parts)]
+    if finding.code in _FITS and finding.cause is None and any(_explains(surfaces[name], finding) for name in between):
+        return replace(finding, route="design")
+    return finding
+
+
+def _explains(surfaces: Sequence[_Round], finding: Finding) -> bool:
+    """Return whether a gap is what a bore and its pin differ by."""
+    plays = [(bore.diameter - pin.diameter) / 2 for bore, pin in itertools.product(surfaces, surfaces) if bore.hollow and not pin.hollow]
+    return finding.value is not None and any(abs(finding.value - play) < _PLAY_MM for play in plays)
 
 
 def _mating(scene: Scene, joint: Joint) -> list[_Round]:
