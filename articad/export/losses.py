@@ -190,12 +190,14 @@ TABLE: dict[str, dict[Format, LossRow]] = {
     },
     "rest.assumed": {
         "urdf": LossRow("metadata"),
-        "mjcf": LossRow("the key home, at rest", "that the file states no such pose: zero is outside of its limits"),
+        "mjcf": LossRow("the key home, at rest", "the fact that the file states no such pose: zero is outside of its limits"),
         "sdf": LossRow("metadata"),
         "usd": LossRow("bodies that are posed at rest"),
     },
     "chain.carriers": {
-        "urdf": LossRow("a chain of joints over carrier links", "that it is one joint; its carriers take a small share of the part's mass"),
+        "urdf": LossRow(
+            "a chain of joints over carrier links", "the fact that it is one joint; its carriers take a small share of the part's mass"
+        ),
         "mjcf": LossRow("joints of one body"),
         "sdf": LossRow("a joint, or a chain of joints"),
         "usd": LossRow("a joint"),
