@@ -169,7 +169,7 @@ def _unfinished(left: list[tuple[str, str]], count: int, budget: WorkBudget) -> 
         where=f"parts.{left[0][0]}",
         message=f"Overlap at rest was not checked for {len(left)} of {counted(count, 'pair')} of parts that are near each other. "
         f"{budget.ended()}",
-        hint="Raise --budget, or spread the parts out; so many in one place are probably a mistake.",
+        hint="Spread the parts out; so many in one place are probably a mistake.",
         value=len(left),
         limit=0,
     )
