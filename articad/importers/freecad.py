@@ -28,6 +28,7 @@ from articad.export.freecad_content import PROPERTY, Content, content_of, unpack
 from articad.findings import Finding, Findings
 from articad.geometry.mass import MassProperties
 from articad.geometry.part import DEFAULT_COLOR, Part, Shape, Solid
+from articad.importers.freecad_constraints import CONSTRAINTS, Constraint, merged, planar_faces
 from articad.importers.freecad_couplings import COUPLINGS, Stated, coupling_of
 from articad.importers.freecad_document import IDENTITY, FreeCADObject, LinkedDocuments
 from articad.importers.freecad_edits import Edit, edits
@@ -441,9 +442,66 @@ class _Model:
         label = item.text("Label") or item.name
         message = (
             f"Joint {label!r} ({kind}) {why}. Use Fixed, Revolute, Slider, Cylindrical, Ball, Gears, Belt, RackPinion or Screw, "
-            "or suppress the joint in FreeCAD."
+            "or one of these beside it between the same two parts, or suppress the joint in FreeCAD."
         )
         return unreadable(self.path, item.name, message, "E_FREECAD_JOINT")
+
+    def constraint(self, item: FreeCADObject, kind: str) -> Constraint:
+        """Return the values of a joint that restricts: Distance, Parallel, Perpendicular or Angle.
+
+        Raises:
+            ReadError: If it is a distance that is not one of two planes, or of two points that coincide.
+        """
+        sides = [side for number in (1, 2) if (side := self.side(item, number)) is not None]
+        document = item.document
+        value, points = document.number(item.name, "Angle" if kind == "Angle" and document.has(item.name, "Angle") else "Distance"), False
+        if kind == "Distance":
+            elements = [self.library.element(item, f"Reference{number}") for number in (1, 2)]
+            points = all(element.startswith("Vertex") for element in elements)
+            planes = [self._is_plane(element, part, frame) for element, (part, _, frame) in zip(elements, sides, strict=True)]
+            if (points and abs(value) > SAME_MM) or not (points or all(planes)):
+                where = " and ".join(element or "a coordinate system" for element in elements)
+                raise self.refused(item, kind, f"is a distance between {where}, which is neither one of two planes nor zero of two points")
+        return Constraint(
+            self.joint_name(item),
+            kind,
+            (sides[0][0], sides[1][0]),
+            (sides[0][1], sides[1][1]),
+            (sides[0][2], sides[1][2]),
+            math.radians(value) if kind == "Angle" else value,
+            points,
+        )
+
+    def _is_plane(self, element: str, part: str, frame: SE3) -> bool:
+        """Return whether a side of a joint is the xy plane of its frame: a coordinate system, or a planar face with this frame."""
+        if not element.startswith("Face"):
+            return not element.startswith(("Edge", "Vertex"))
+        solid = self.solid(part)
+        if solid is None or solid.mesh.face is None:
+            return False
+        for number, point, normal in planar_faces(solid.mesh.vertices, solid.mesh.triangles, solid.mesh.face):
+            if element == f"Face{number}":
+                off = float(np.dot(point - frame.translation, normal))
+                return abs(off) < STANDS_MM and float(np.linalg.norm(np.cross(normal, frame.rotation[:, 2]))) < STANDS_RAD
+        return False
+
+    def restricted(self, joints: list[Joint], rows: list[tuple[FreeCADObject, str]]) -> list[Joint]:
+        """Return the joints, restricted by FreeCAD's joints that restrict others.
+
+        Raises:
+            ReadError: With the name of one that leaves motions which no joint of articad has.
+        """
+        constraints: dict[str, tuple[Constraint, FreeCADObject, str]] = {}
+        for item, kind in rows:
+            made = self.constraint(item, kind)
+            made = replace(made, name=_free(made.name, {*constraints, *(joint.name for joint in joints)}))
+            constraints[made.name] = (made, item, kind)
+        found = merged(joints, [made for made, _, _ in constraints.values()], self.poses)
+        if isinstance(found, tuple):
+            constraint, why = found
+            _, item, kind = constraints[constraint.name]
+            raise self.refused(item, kind, why)
+        return found
 
     # ------------------------------------------------------------------ an assembly made by hand
 
@@ -451,13 +509,17 @@ class _Model:
         """Return the assembly of a document that articad did not write."""
         joints: list[Joint] = []
         stated: list[tuple[FreeCADObject, Stated]] = []
+        restricting: list[tuple[FreeCADObject, str]] = []
         for item, kind, joint in self.joints():
             if joint is not None:
                 joints.append(replace(joint, name=_free(joint.name, {made.name for made in joints})))
             elif kind in COUPLINGS:
                 stated.append((item, self.stated(item, kind)))
+            elif kind in CONSTRAINTS:
+                restricting.append((item, kind))
             else:
                 raise self.refused(item, kind)
+        joints = self.restricted(joints, restricting)
         couplings = [self.coupled(item, told, joints) for item, told in stated]
         joints += self.loose(joints)
         parts = [self.part(name, joints) for name in self.parts]
@@ -556,13 +618,17 @@ def _updated(model: _Model, recorded: Assembly) -> Assembly:
             renamed[joint.name] = now.name
             joints.append(now)
     couplings: list[tuple[FreeCADObject, Stated]] = []
+    restricting: list[tuple[FreeCADObject, str]] = []
     for item, kind, found in extra:
         if found is not None:
             joints.append(replace(found, name=_free(found.name, {joint.name for joint in joints})))
         elif kind in COUPLINGS:
             couplings.append((item, model.stated(item, kind)))
+        elif kind in CONSTRAINTS:
+            restricting.append((item, kind))
         else:
             raise model.refused(item, kind)
+    joints = model.restricted(joints, restricting)
     tied = [*_couplings_now(model, recorded, joints, renamed), *(model.coupled(item, told, joints) for item, told in couplings)]
     joints += model.loose(joints)
     known = {now: name for name, now in names.items()}
@@ -590,7 +656,7 @@ def _updated(model: _Model, recorded: Assembly) -> Assembly:
         name=recorded.name,
         mechanism=mechanism,
         parts=parts,
-        fits={renamed[joint]: fit for joint, fit in recorded.fits.items() if joint in renamed},
+        fits={renamed[joint]: fit for joint, fit in recorded.fits.items() if renamed.get(joint) in {made.name for made in joints}},
         waivers=waivers,
     )
     return replace(made, findings=Findings([*model.findings, *_edit_findings(model), *_elsewhere(model, made)]))

@@ -353,6 +353,13 @@ class LinkedDocuments:
             document = step.document if inside else self.container(step).document  # a sub-assembly has links of its own to its parts
         return steps
 
+    def element(self, item: FreeCADObject, key: str) -> str:
+        """Return the face, edge or vertex that a reference names, such as `Face5`; an empty text for a whole object."""
+        link = item.document.row(item.name, key, "XLink")
+        sub = None if link is None else link.find("Sub")
+        tail = "" if link is None else (sub.get("value") if sub is not None else link.get("sub")) or ""
+        return str(tail.rpartition(".")[2])
+
     def _document(self, item: FreeCADObject, file: str) -> FreeCADDocument:
         """Return the document of a link: that of the object, or the file that it names."""
         if not file:
