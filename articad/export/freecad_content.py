@@ -20,6 +20,7 @@ MAX_BYTES = 64 * 2**20  # of unpacked content
 UNCOMPARED = (
     "properties of the document (comment, author, license)",
     "cameras and line styles",
+    "cells of the bill of materials",
     "coordinates of points that no constraint of a sketch fixes",
     "objects of other workbenches beyond their numbers, texts and links",
 )
@@ -33,7 +34,14 @@ _DERIVED = (
     "App::Point",
     "App::LocalCoordinateSystem",
 )
-_GROUPS = ("Assembly::AssemblyObject", "Assembly::JointGroup", "App::Part", "PartDesign::Body", "App::DocumentObjectGroup")
+_GROUPS = (
+    "Assembly::AssemblyObject",
+    "Assembly::JointGroup",
+    "Assembly::BomGroup",
+    "App::Part",
+    "PartDesign::Body",
+    "App::DocumentObjectGroup",
+)
 _PLACED = (
     "App::Part",
     "App::Link",
@@ -53,6 +61,7 @@ _NOT_COMPARED = {  # compared elsewhere, derived by FreeCAD, or articad's own
     "AttacherType", "AttacherEngine", "Uid", "Id", "_ElementMapVersion", "Density", "Mass", "Volume", "FullyConstrained",
     "Origin", "Group", "ArticadRecords", PROPERTY, "Material", "License", "LicenseURL", "Color", "Type", "ShapeMaterial",
 }  # fmt: skip
+_BILL = "Assembly::BomObject"  # a sheet that FreeCAD fills in
 _NUMBERS = ("Float", "Integer")  # tags of XML that hold one
 
 Json = dict[str, Any]
@@ -137,7 +146,7 @@ def _values(kind: str, rows: dict[str, Any]) -> Iterator[tuple[str, Any]]:
             yield from _constraints(row)
         elif family == "Part::PropertyGeometryList":
             yield name, [entry.get("type", "") for entry in row.iter("Geometry")]
-        elif family == "Spreadsheet::PropertySheet":
+        elif family == "Spreadsheet::PropertySheet" and kind != _BILL:
             yield from ((f"cells.{cell.get('address', '')}", cell.get("content", "")) for cell in row.iter("Cell"))
         elif family.startswith("App::Property") and (value := _value(row)) is not None:
             yield name, value

@@ -9,6 +9,8 @@ from articad.plan.resolve import ResolvedPlan
 from articad.plan.schema import DerivedPart, MirrorDerivation, Pose, RigidDerivation
 
 Number = float | str
+UNITS = {"mm": "mm", "deg": "deg", "1": ""}
+"""FreeCAD's word for each unit of a parameter."""
 
 
 class Followed:
@@ -20,13 +22,19 @@ class Followed:
 
     def __init__(self, resolved: ResolvedPlan | None) -> None:
         self._resolved = resolved
-        self._names = {} if resolved is None else {name: f"Parameters.p_{name}" for name in resolved.parameters}
+        self._units = {} if resolved is None else {row.name: UNITS[row.unit] for row in resolved.plan.parameters}
+        self._names = {name: f"(Parameters.p_{name} / 1 {unit})" if unit else f"Parameters.p_{name}" for name, unit in self._units.items()}
         self._forms = {} if resolved is None else {form.name: form for form in resolved.plan.parts}
 
     def number(self, number: Number, unit: str = "") -> str | None:
-        """Return the expression of a number of the plan, or None if it is a plain number."""
+        """Return the expression of a number of the plan, or None if it is a plain number.
+
+        Without a unit, the expression is a plain number too: lengths in mm, angles in degrees.
+        """
         if not isinstance(number, str):
             return None
+        if unit and self._units.get(number.strip()) == unit:
+            return f"Parameters.p_{number.strip()}"
         try:
             expression = parse(number)
             if not expression.names:

@@ -54,6 +54,8 @@ _COUPLINGS = {"gear": "Gears", "belt": "Belt", "rack": "RackPinion", "screw": "S
 
 _STEP = 1e-3  # relative change of a parameter, to see what it turns
 PLACED_MM, PLACED_RAD = 1e-7, 1e-10  # by which a placement may differ from its expression
+BILL_COLUMNS = {"Description": "Label2", "Material": "ArticadMaterial", "Mass": "ArticadMass"}
+"""Columns that FreeCAD's bill of materials has beside its own, and the properties of parts that they show."""
 _FROZEN = ("shape", "mesh", "empty")  # kinds of geometry without a feature tree
 
 
@@ -118,6 +120,7 @@ class Job:
             "parameters_label": "Parameters" if live == len(parameters) else f"Parameters ({split})",
             "parts": parts,
             "joints": [*self._joints(), *self._couplings()],
+            "bill": {"group": self.names.claim("Bills"), "object": self.names.claim("Bill"), "columns": BILL_COLUMNS},
         }
 
     # ------------------------------------------------------------------ parameters
@@ -194,6 +197,7 @@ class Job:
             "object": self.objects[name],
             "color": part.color,
             "material": part.material,
+            "mass": _mass(part),
             "description": "" if target is None else target.description,
             "placement": _seven(T),
             "placed": self._placed(name, T),
@@ -458,6 +462,14 @@ class Job:
     def losses(self) -> tuple[Loss, ...]:
         """Losses of what FreeCAD cannot represent; complete after the conversion to JSON."""
         return (*losses_of("freecad", self._told), *kept_losses("freecad", self.assembly.kept))
+
+
+def _mass(part: Part) -> Json | None:
+    """Return a part's mass [kg], and the density that gives it for the volume of its solid [kg/m³]; None for a part without mass."""
+    if part.mass is None:
+        return None
+    volume = 0.0 if part.solid is None else part.solid.volume * 1e-9
+    return {"kg": float(part.mass.mass), "density": float(part.mass.mass) / volume if volume > 0 else None}
 
 
 def _distances(coupling: Coupling) -> dict[str, float]:

@@ -90,6 +90,8 @@ def differences(row: Mapping[str, Any] | None, part: Part) -> Iterator[tuple[str
     if row["kind"] not in ("shape", "mesh"):
         yield "has no shape", 1.0
         return
+    if part.mass is not None and row["mass"] is not None:
+        yield from _off("mass", row["mass"] - part.mass.mass, part.mass.mass, SAME, "kg")
     if row["kind"] == "mesh":
         volume = 0.0 if mesh is None else abs(mesh.volume)
         yield from _off("volume", abs(row["volume"]) - volume, volume, SAME_MESH, "mm³")

@@ -8,6 +8,7 @@ be in two groups.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,6 +51,7 @@ _KINDS = (
     "Gears",
     "Belt",
 )
+_UNIT_KINDS = {"mm": "Distance", "deg": "Angle", "1": "Float"}  # FreeCAD's properties for the units of parameters
 _STAYS = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
 _NO_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # characters that XML cannot contain
 _READ_ONLY = str(1 << 21 | 1 << 2)  # a property of the object itself that the property editor shows but does not change
@@ -124,7 +126,7 @@ class _Writer:
         )
         for joint in self.job["joints"]:
             self._joint(joint)
-        members = [part["object"] for part in self.job["parts"]]
+        members = [*(part["object"] for part in self.job["parts"]), self._bill(), self.job["bill"]["object"]]
         self.labels.discard(self.job["name"])
         assembly = [
             _text("ArticadRecords", "\n".join(self.job["records"]), "articad", "articad's records, for the way back", attr=4),
@@ -202,9 +204,8 @@ class _Writer:
         for row in rows:
             note = f"{row['description']} [{row['unit']}] {row['why']}".strip() if "unit" in row else ""
             fixed = not row.get("live", True)
-            numbers.append(
-                _number(f"{prefix}_{row['name']}", row["value"], f"Fixed {group.lower()}" if fixed else group, note, fixed=fixed)
-            )
+            named, kind = f"Fixed {group.lower()}" if fixed else group, _UNIT_KINDS[row.get("unit", "1")]
+            numbers.append(_number(f"{prefix}_{row['name']}", row["value"], named, note, fixed=fixed, kind=kind))
         followed = {f"{prefix}_{row['name']}": row["expression"] for row in rows if row["expression"]}
         return self._add(name, "App::VarSet", *numbers, label=label, expressions=followed)
 
@@ -228,7 +229,8 @@ class _Writer:
             for connector in part["connectors"]:
                 self.systems[name, connector["name"]] = self.systems[source, connector["name"]]
             target = [_target("LinkedObject", self.containers[source]), _placement("LinkPlacement", part["placement"])]
-            self._add(item, "App::Link", *target, *told, label=name, extension="LinkExtension", expressions=placed)
+            mass, follows = self._mass(part)
+            self._add(item, "App::Link", *target, *told, *mass, label=name, extension="LinkExtension", expressions=placed | follows)
             return
         origin = self._origin()
         place = len(self.objects)
@@ -240,8 +242,47 @@ class _Writer:
             members.append(self._values(values, f"{name} dimensions (frozen shape)", "d", "Dimensions", rows))
         members += self._shape(part)
         members += [self._connector(part, connector) for connector in part["connectors"]]
+        mass, follows = self._mass(part)
+        told, placed = [*told, *mass], placed | follows
         grouped = [_links("Group", members), _link("Origin", origin)]
         self._add(item, "App::Part", *grouped, *told, label=name, extension="OriginGroupExtension", expressions=placed, at=place)
+
+    def _mass(self, part: Json) -> tuple[list[Element], dict[str, str]]:
+        """Return the properties of a part's mass, and their expressions: the mass follows the volume of its shape."""
+        mass = part["mass"]
+        if mass is None:
+            return [], {}
+        if mass["density"] is None or part["kind"] in ("mesh", "empty"):
+            note = "Mass when articad wrote the document; it does not follow the shape"
+            return [_number("ArticadMass", mass["kg"], "articad", note, fixed=True, kind="Mass")], {}
+        note = "Density of the material when articad wrote the document"
+        density = _number("ArticadDensity", mass["density"] * 1e-9, "articad", note, fixed=True, kind="Density")  # kg/mm³
+        row = _number("ArticadMass", mass["kg"], "articad", "Volume times density", fixed=True, kind="Mass")
+        return [density, row], {"ArticadMass": f"{self.shapes[part['name']]}.Shape.Volume * 1 mm^3 * ArticadDensity"}
+
+    def _bill(self) -> str:
+        """Add FreeCAD's own bill of materials and return its group."""
+        bill, copies = self.job["bill"], Counter(self.containers[part["name"]] for part in self.job["parts"])
+        names = ("Index", "Name", "Quantity", *bill["columns"])
+        columns = [_row("String", value=name) for name in names]
+        listed = _property("columnsNames", "StringList", _row("StringList", *columns, count=len(columns)))
+        flat = _property("detailParts", "Bool", _row("Bool", value="false"))
+        rows = [[f"'{name}" for name in names]]
+        for part in (part for part in self.job["parts"] if part["kind"] != "link"):
+            shown = [f"={part['object']}.{key}" if key != "ArticadMass" or part["mass"] else "" for key in bill["columns"].values()]
+            rows.append([f"'{len(rows)}", f"'{part['name']}", str(copies[part["object"]]), *shown])
+        cells = [
+            _row("Cell", address=f"{chr(ord('A') + place)}{number}", content=text)
+            for number, row in enumerate(rows, start=1)
+            for place, text in enumerate(row)
+            if text
+        ]
+        sheet = _row("Cells", _row("XLinks", count=0), *cells, Count=len(cells), xlink=1)
+        held = _property("cells", "", sheet, family="Spreadsheet::PropertySheet")
+        self._add(bill["object"], "Assembly::BomObject", held, listed, flat, label="Bill of materials")
+        return self._add(
+            bill["group"], "Assembly::BomGroup", _links("Group", [bill["object"]]), label="Bills of materials", extension="GroupExtension"
+        )
 
     def _shape(self, part: Json) -> list[str]:
         """Add the object that shows the part, and return it with its constituents."""
@@ -357,8 +398,8 @@ def _text(name: str, value: str, group: str = "", doc: str = "", *, attr: int = 
     return _property(name, "String", _row("String", value=value), group=group, doc=doc, attr=attr)
 
 
-def _number(name: str, value: float, group: str, doc: str, *, fixed: bool = False) -> Element:
-    row = _property(name, "Float", _row("Float", value=repr(float(value))), group=group, doc=doc)
+def _number(name: str, value: float, group: str, doc: str, *, fixed: bool = False, kind: str = "Float") -> Element:
+    row = _property(name, kind, _row("Float", value=repr(float(value))), group=group, doc=doc)
     if fixed:
         row.set("status", _READ_ONLY)
     return row

@@ -446,7 +446,7 @@ CODES: dict[str, Code] = {
         "A FreeCAD document was changed after articad wrote it; articad does not adopt the change.",
         "Make the change in the plan or a part script, or keep the document.",
     ),
-    "W_FREECAD_SHAPE": Code("import", None, "The shape of a FreeCAD part is not one valid solid.", "Repair it in FreeCAD."),
+    "W_FREECAD_SHAPE": Code("import", None, "The shape of a FreeCAD part is not made of valid solids.", "Repair it in FreeCAD."),
     # --- interference and fits
     "E_OVERLAP": Code("interference", "design", "Two parts overlap at rest.", "Move one of them, or shorten it."),
     "W_STATIC_OVERLAP": Code(

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -32,6 +32,7 @@ from articad.importers.freecad_constraints import CONSTRAINTS, Constraint, merge
 from articad.importers.freecad_couplings import COUPLINGS, Stated, coupling_of
 from articad.importers.freecad_document import IDENTITY, FreeCADObject, LinkedDocuments
 from articad.importers.freecad_edits import Edit, edits
+from articad.importers.freecad_materials import DENSITIES
 from articad.importers.freecad_mesh import read_mesh_kernel
 from articad.importers.reading import Folder, unreadable
 from articad.importers.records import assembly_of, read_records
@@ -160,6 +161,7 @@ class _Model:
         self.poses = {name: self._held[item] @ item.placement for name, item in self.parts.items()}
         self.colors = {self.document.path: self.document.colors()}
         self._solids: dict[FreeCADObject, tuple[Solid | None, tuple[Shape, ...]]] = {}
+        self._masses: dict[FreeCADObject, list[MassProperties | None]] = {}
         self._wrong: dict[FreeCADObject, list[Finding]] = {}  # what was said of a shape when it was read
         self._reader = BrepReader()
 
@@ -240,11 +242,17 @@ class _Model:
 
     def _read(self, container: FreeCADObject, name: str) -> tuple[Solid | None, tuple[Shape, ...]]:
         solids, shapes, wrong = [], [], len(self.findings)
+        masses = self._masses.setdefault(container, [])
         for item, T in self.library.shapes(container):
             if item.type == "Mesh::Feature":
                 shapes += self._mesh(item, T, name)
+                masses.append(None)
             else:
-                solids += self._brep(item, T, name)
+                found = self._brep(item, T, name)
+                density = DENSITIES.get(item.document.value(item.name, "ShapeMaterial", "PropertyMaterial", "uuid") or "")
+                masses += [None if density is None else solid.mass(density) for solid in found]
+                masses += [None] if not found else []
+                solids += found
         if len(solids) == 1 and not shapes:
             return solids[0], ()
         if not solids and not shapes and len(self.findings) == wrong and not (self.records and name in self.recorded.values()):
@@ -262,12 +270,20 @@ class _Model:
         try:
             folder = Path(tempfile.mkdtemp(dir=_kept().name))
             content = item.document.archive.read(file)
-            return [self._reader.read_brep(content, name=name, T=T, deflection=self.deflection, folder=folder)]
+            solids, loose = self._reader.read_breps(content, name=name, T=T, deflection=self.deflection, folder=folder)
         except (ArticadError, BadArchiveError) as error:
+            if "it holds no shape" in str(error):  # a body without features
+                return []
             late = "seconds" in str(error) or "ran out of time" in str(error)
-            why = f"The shape of {item.name} {'could not be measured in time' if late else 'is not one valid solid'}: {str(error)[:200]}"
+            why = (
+                f"The shape of {item.name} {'could not be measured in time' if late else 'is not made of valid solids'}: {str(error)[:200]}"
+            )
             self._misshapen(name, why, "Simplify it, or read the file on a faster machine." if late else "Repair it in FreeCAD.")
-        return []
+            return []
+        if loose:
+            why = f"The shape of {item.name} has {loose} loose faces or edges beside its solids; they are left out."
+            self._misshapen(name, why, "Make a solid of them, or delete them.")
+        return solids
 
     def _mesh(self, item: FreeCADObject, T: SE3, name: str) -> list[Shape]:
         file = item.document.value(item.name, "Mesh", "Mesh", "file")
@@ -507,20 +523,7 @@ class _Model:
 
     def assemble(self) -> Assembly:
         """Return the assembly of a document that articad did not write."""
-        joints: list[Joint] = []
-        stated: list[tuple[FreeCADObject, Stated]] = []
-        restricting: list[tuple[FreeCADObject, str]] = []
-        for item, kind, joint in self.joints():
-            if joint is not None:
-                joints.append(replace(joint, name=_free(joint.name, {made.name for made in joints})))
-            elif kind in COUPLINGS:
-                stated.append((item, self.stated(item, kind)))
-            elif kind in CONSTRAINTS:
-                restricting.append((item, kind))
-            else:
-                raise self.refused(item, kind)
-        joints = self.restricted(joints, restricting)
-        couplings = [self.coupled(item, told, joints) for item, told in stated]
+        joints, couplings = self.joined([], self.joints())
         joints += self.loose(joints)
         parts = [self.part(name, joints) for name in self.parts]
         title = self.assembly.text("Label") or self.path.stem
@@ -536,6 +539,25 @@ class _Model:
         except ArticadError as error:
             raise unreadable(self.path, self.assembly.name, f"It is not a valid mechanism: {error.message}") from error
         return replace(made, findings=Findings(self.findings), foreign=True)
+
+    def joined(self, joints: list[Joint], rows: Iterable[tuple[FreeCADObject, str, Joint | None]]) -> tuple[list[Joint], list[Coupling]]:
+        """Return joints together with more joints of the document, as `joints` yields them, and the couplings among these.
+
+        Raises:
+            ReadError: With the name of a joint that cannot be read.
+        """
+        made, stated, restricting = list(joints), [], []
+        for item, kind, joint in rows:
+            if joint is not None:
+                made.append(replace(joint, name=_free(joint.name, {other.name for other in made})))
+            elif kind in COUPLINGS:
+                stated.append((item, self.stated(item, kind)))
+            elif kind in CONSTRAINTS:
+                restricting.append((item, kind))
+            else:
+                raise self.refused(item, kind)
+        made = self.restricted(made, restricting)
+        return made, [self.coupled(item, told, made) for item, told in stated]
 
     def coupled(self, item: FreeCADObject, told: Stated, joints: list[Joint]) -> Coupling:
         """Return the coupling that a joint of FreeCAD's means, or refuse the joint by its name."""
@@ -555,9 +577,15 @@ class _Model:
         connectors = {key: Connector(key, frame) for key, frame in frames.items()}
         solid, color = self.solid(name), self.color(name) or DEFAULT_COLOR
         if solid is not None:
-            return Part.from_solid(name, solid, connectors=connectors, color=color)
+            return replace(Part.from_solid(name, solid, connectors=connectors, color=color), mass=self.mass(name))
         shapes = self.meshes(name)
-        return Part(name, connectors, shapes, shapes, color=color)
+        return Part(name, connectors, shapes, shapes, mass=self.mass(name), color=color)
+
+    def mass(self, name: str) -> MassProperties | None:
+        """Return the mass of a part, if each of its shapes is made of solids whose material in FreeCAD's library has a density."""
+        self._measured(name)
+        masses = self._masses[self.library.container(self.parts[name])]
+        return MassProperties.combined(mass for mass in masses if mass is not None) if masses and None not in masses else None
 
     def loose(self, joints: list[Joint]) -> list[Joint]:
         """Return free joints to the ground for parts that no joint connects to it, and say so."""
@@ -617,19 +645,8 @@ def _updated(model: _Model, recorded: Assembly) -> Assembly:
         if now is not None:
             renamed[joint.name] = now.name
             joints.append(now)
-    couplings: list[tuple[FreeCADObject, Stated]] = []
-    restricting: list[tuple[FreeCADObject, str]] = []
-    for item, kind, found in extra:
-        if found is not None:
-            joints.append(replace(found, name=_free(found.name, {joint.name for joint in joints})))
-        elif kind in COUPLINGS:
-            couplings.append((item, model.stated(item, kind)))
-        elif kind in CONSTRAINTS:
-            restricting.append((item, kind))
-        else:
-            raise model.refused(item, kind)
-    joints = model.restricted(joints, restricting)
-    tied = [*_couplings_now(model, recorded, joints, renamed), *(model.coupled(item, told, joints) for item, told in couplings)]
+    joints, added = model.joined(joints, extra)
+    tied = [*_couplings_now(model, recorded, joints, renamed), *added]
     joints += model.loose(joints)
     known = {now: name for name, now in names.items()}
     order = [*(names[name] for name in recorded.parts if name in names), *(name for name in model.parts if name not in known)]
@@ -878,7 +895,8 @@ def _edit_findings(model: _Model) -> Iterator[Finding]:
         )
 
 
-_HINTS = {"ShapeMaterial": "Masses follow the property ArticadMaterial of the part: set it to the name of a material of the plan."}
+_OTHER_MASS = "Masses follow the property ArticadMaterial of the part: set it to the name of a material of the plan."
+_HINTS = dict.fromkeys(("ShapeMaterial", "ArticadDensity", "ArticadMass"), _OTHER_MASS)
 
 
 def _taken(edit: Edit, model: _Model, used: set[str]) -> bool:
@@ -899,7 +917,7 @@ def _taken(edit: Edit, model: _Model, used: set[str]) -> bool:
         return True
     if edit.kind in ("parameter", "dimension", "expression") and edit.type == "App::VarSet":
         return model.follows(edit.key, used)
-    return edit.kind != "note" and edit.object in used
+    return edit.kind != "note" and edit.key not in ("ArticadMass", "ArticadDensity") and edit.object in used
 
 
 def _elsewhere(model: _Model, made: Assembly) -> Iterator[Finding]:

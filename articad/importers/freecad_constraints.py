@@ -80,7 +80,7 @@ def _one_joint(held: list[Joint], here: list[Constraint], poses: Mapping[str, SE
     parent, child = (held[0].parent, held[0].child) if held else here[0].parts
     T = poses[parent].inverse() @ poses[child]
     equations = [_turned_round(constraint, parent) for constraint in here]
-    for constraint, equation in zip(here, equations, strict=True):
+    for equation in equations:
         miss = float(np.abs(_residual(equation, T)).max())
         if not miss <= HOLDS:
             return f"misses its value by {miss:.3g} where the parts stand: solve the assembly in FreeCAD and save it"
@@ -118,9 +118,7 @@ def _turned_round(constraint: Constraint, parent: str) -> Constraint:
     """Return a constraint seen from a part; equations of planes stay those of the first one's plane."""
     if constraint.parts[0] == parent:
         return constraint
-    return replace(
-        constraint, parts=constraint.parts[::-1], connectors=constraint.connectors[::-1], frames=constraint.frames[::-1]
-    )
+    return replace(constraint, parts=constraint.parts[::-1], connectors=constraint.connectors[::-1], frames=constraint.frames[::-1])
 
 
 def _residual(constraint: Constraint, T: SE3) -> FloatArray:
@@ -197,19 +195,21 @@ def _joint_of(motions: FloatArray, size: float) -> tuple[JointType, SE3] | None:
         center, *_ = np.linalg.lstsq(rows, motions[:, :3].ravel(), rcond=None)
         fits = np.allclose(rows @ center, motions[:, :3].ravel(), atol=_LEVEL)
         return (JointType.BALL, SE3.from_translation(size * center)) if fits else None
-    if turns != 1:
-        return None
+    return _about_one_direction(motions, size) if turns == 1 else None
+
+
+def _about_one_direction(motions: FloatArray, size: float) -> tuple[JointType, SE3] | None:
+    """Return the joint whose turns are all about one direction: a hinge, a cylindrical joint or a plane."""
     omega = np.linalg.svd(motions[:, 3:])[2][0]
     turn = np.linalg.lstsq(motions[:, 3:].T, omega, rcond=None)[0] @ motions
-    point = size * np.cross(omega, turn[:3])  # v + ω × p is along ω
-    slides = _slides(motions)
-    if count == 1:
-        return (JointType.REVOLUTE, _axis(omega, point)) if abs(float(np.dot(turn[:3], omega))) < _LEVEL else None
-    if count == 2 and float(np.linalg.norm(np.cross(slides[0], omega))) < _LEVEL:
-        return JointType.CYLINDRICAL, _axis(omega, point)
-    if count == 3 and float(np.abs(slides @ omega).max()) < _LEVEL:
-        return JointType.PLANAR, _axis(omega, np.zeros(3))
-    return None
+    axis, slides = _axis(omega, size * np.cross(omega, turn[:3])), _slides(motions)  # v + ω × p is along ω
+    if len(motions) == 1:
+        kind, off = JointType.REVOLUTE, abs(float(np.dot(turn[:3], omega)))
+    elif len(motions) == 2:
+        kind, off = JointType.CYLINDRICAL, float(np.linalg.norm(np.cross(slides[0], omega)))
+    else:
+        kind, off = JointType.PLANAR, float(np.abs(slides @ omega).max(initial=0.0))
+    return (kind, axis) if len(motions) <= 3 and off < _LEVEL else None
 
 
 def _slides(motions: FloatArray) -> FloatArray:
@@ -250,9 +250,7 @@ def _restricted(known: list[Joint], kind: JointType, axis: SE3, T: SE3) -> Joint
     return None
 
 
-def _new(
-    first: Constraint, held: list[Joint], kind: JointType, axis: SE3, T: SE3, parent: str, child: str
-) -> Joint:
+def _new(first: Constraint, held: list[Joint], kind: JointType, axis: SE3, T: SE3, parent: str, child: str) -> Joint:
     """Return a joint of a kind about an axis in the child, at rest where the document stands."""
     name = held[0].name if held else first.name
     rest = (0.0, 0.0, 0.0, 1.0) if kind is JointType.BALL else (0.0,) * len(kind.coordinates)
@@ -314,7 +312,9 @@ def _cross(vector: FloatArray) -> FloatArray:
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
-def planar_faces(vertices: FloatArray, triangles: NDArray[np.int32], face: NDArray[np.int32]) -> Iterator[tuple[int, FloatArray, FloatArray]]:
+def planar_faces(
+    vertices: FloatArray, triangles: NDArray[np.int32], face: NDArray[np.int32]
+) -> Iterator[tuple[int, FloatArray, FloatArray]]:
     """Yield the number of each planar face of a mesh, from 1 on, a point on it and its normal."""
     size = float(np.abs(vertices).max(initial=1.0))
     for number in np.unique(face):

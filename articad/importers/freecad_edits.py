@@ -120,6 +120,8 @@ def _kind(name: str, kind: str, key: str) -> Kind:
         "Group": "group",
         "Label2": "note",
         "ShapeMaterial": "note",
+        "ArticadDensity": "note",
+        "ArticadMass": "note",
     }
     if key in own:
         return own[key]

@@ -281,13 +281,15 @@ class Build123dKernel:
             said = file.read(_CRASH_BYTES).decode(errors="replace")
         return _Ran(outcome, read_lines(job / report), said)
 
-    def _measured(self, job: Path, *, form: str, name: str, deflection: float, matrix: list[list[float]] | None = None) -> Json:
-        """Measure, mesh and write a shape in a process that ran no script; return its report.
+    def _measured(
+        self, job: Path, *, form: str, name: str, deflection: float, matrix: list[list[float]] | None = None, place: int | None = None
+    ) -> Json:
+        """Measure, mesh and write a shape, or the solid at one place in it, in a process that ran no script; return its report.
 
         Raises:
             BuildError: If the kernel fails on it.
         """
-        request = {"form": form, "name": name, "matrix": matrix, "deflection_mm": deflection, "angle_deg": ANGLE_DEG}
+        request = {"form": form, "name": name, "matrix": matrix, "deflection_mm": deflection, "angle_deg": ANGLE_DEG, "place": place}
         limits = replace(self.limits, probe_seconds=MEASURE_SPARE_SECONDS)
         ran = self._run("measure", job, request, {"shape": "shape.bin"} | RESULT_FILES, limits)
         shape: Json = {}

@@ -45,6 +45,7 @@ DOCUMENT = "part.FCStd"
 SEAT = "seat.json"  # pose of the document's body in the part's frame: seven numbers
 RECIPE = 2  # increased when documents are written differently, so that cached parts are built again
 MAX_DOCUMENT_BYTES, MAX_UNPACKED_BYTES, MAX_ENTRIES = 64 * 2**20, 512 * 2**20, 10_000
+MAX_SOLIDS = 100  # that one B-rep is divided into
 _PROGRAMS = Path(__file__).parent / "inside_freecad"
 _FAMILIES = ("PartDesign::", "Sketcher::", "Part::", "Spreadsheet::")  # prefixes of the types that a part may consist of
 _READING = re.compile(r"Python|Part::(Import|CurveNet)")  # types that run Python, or read files by their names
@@ -223,13 +224,44 @@ class BrepReader(Build123dKernel):
         Raises:
             ReadError: If it is not B-rep or does not contain exactly one valid solid.
         """
+        return self._read(content, None, name=name, T=T, deflection=deflection, folder=folder)
+
+    def read_breps(self, content: bytes, *, name: str, T: SE3, deflection: float, folder: Path) -> tuple[list[Solid], int]:
+        """Return all solids of a B-rep, moved by `T`, and the number of faces and edges beside them.
+
+        Args:
+            content: The B-rep, as text.
+            name: Name of the part, for messages.
+            T: Its pose.
+            deflection: Largest distance of a mesh from its solid [mm].
+            folder: Folder for the B-rep files of the solids.
+
+        Raises:
+            ReadError: If it is not B-rep, contains no solid or more than `MAX_SOLIDS`, or one of them is not valid.
+        """
+        try:
+            return [self.read_brep(content, name=name, T=T, deflection=deflection, folder=folder)], 0
+        except ReadError as error:
+            counts = [finding for finding in error.findings if finding.code == "E_NOT_ONE_SOLID"]
+            count = int(counts[0].value or 0) if counts else 0
+            if not 0 < count <= MAX_SOLIDS:
+                raise
+            loose = re.search(r"and (\d+) loose", counts[0].message)
+        solids = []
+        for place in range(count):
+            target = folder / str(place)
+            target.mkdir()
+            solids.append(self._read(content, place, name=name, T=T, deflection=deflection, folder=target))
+        return solids, int(loose[1]) if loose else 0
+
+    def _read(self, content: bytes, place: int | None, *, name: str, T: SE3, deflection: float, folder: Path | None) -> Solid:
         self._require_sandbox()
         kept, folder = folder is not None, folder or self._new_folder()
         try:
             with self._job() as job:
                 (job / "shape.bin").write_bytes(shortened(content))
                 matrix = None if T.allclose(SE3.identity(), mm=0.0, rad=0.0) else T.matrix.tolist()
-                shape = self._measured(job, form="brep", name=name, deflection=deflection, matrix=matrix)
+                shape = self._measured(job, form="brep", name=name, deflection=deflection, matrix=matrix, place=place)
                 findings = Findings(solid_findings({"name": name}, shape))
                 if not findings.ok:
                     raise ReadError(findings.errors[0].message, path=name, findings=findings)

@@ -75,7 +75,9 @@ def read_shape(form: str, content: bytes) -> TopoDS_Shape:
     return shape
 
 
-def measure(shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, matrix: list[list[float]] | None = None) -> Measured:
+def measure(
+    shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, matrix: list[list[float]] | None = None, place: int | None = None
+) -> Measured:
     """Measure a shape and, if it is one solid with volume, mesh it and write it.
 
     Args:
@@ -84,8 +86,12 @@ def measure(shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, 
         angle: Angular deflection of the mesh [rad].
         name: Product name in the STEP file.
         matrix: Rigid motion or reflection `(4, 4)` to apply first.
+        place: Which one of several solids to measure alone; by default the shape must be one solid.
     """
     solids = list(found(shape, TopAbs_SOLID))
+    if place is not None:
+        solids = solids[place : place + 1]
+        shape = solids[0] if solids else shape
     loose = sum(1 for _ in found(shape, TopAbs_FACE, avoid=TopAbs_SOLID)) + sum(1 for _ in found(shape, TopAbs_EDGE, avoid=TopAbs_FACE))
     report: Json = {"ok": True, "solids": len(solids), "loose": loose}
     if len(solids) != 1:

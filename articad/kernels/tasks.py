@@ -40,13 +40,13 @@ def measure_shape(request: Json, files: dict[str, int]) -> None:
     if request["task"] == "pieces":
         measured = measure.pieces(shape, **accuracy)
     else:
-        measured = measure.measure(shape, **accuracy, name=job["name"], matrix=job["matrix"])
+        measured = measure.measure(shape, **accuracy, name=job["name"], matrix=job["matrix"], place=job.get("place"))
     for name, content in measured.files.items():
         _write(files[name], content)
     _write(files["report"], measure.to_json(measured.report))
     if measured.report.get("valid") and measured.files:
         signal.setitimer(signal.ITIMER_REAL, SELF_INTERSECTION_SECONDS)
-        _write(files["report"], measure.to_json(measure.self_intersection(measure.solids_of(shape)[0])))
+        _write(files["report"], measure.to_json(measure.self_intersection(measure.solids_of(shape)[job.get("place") or 0])))
 
 
 def judge_shape(request: Json, files: dict[str, int]) -> None:

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from articad.connectors.se3 import SE3
-from articad.importers.freecad_constraints import Constraint, merged, planar_faces
-from articad.geometry.shapes import box
-from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.geometry.mesh import TriMesh
+from articad.geometry.shapes import box
+from articad.importers.freecad_constraints import Constraint, merged, planar_faces
+from articad.kinematics.joints import Joint, JointLimits, JointType
 
 POSES = {"a": SE3.from_axis_angle([1.0, 2.0, -1.0], 0.7), "b": SE3.from_axis_angle([0.3, -1.0, 0.5], 1.9, about=[40.0, -25.0, 60.0])}
 ENDLESS = {JointType.CYLINDRICAL: 2, JointType.REVOLUTE: 1, JointType.SLIDER: 1}
@@ -39,7 +39,10 @@ def joint(kind: JointType, T: SE3, rest: tuple[float, ...] = (), *, back: bool =
     """Return a joint whose frames meet at `T` after its rest motion."""
     near, far = at(T)
     near = near @ kind.motion(rest).inverse() if rest else near
-    limits = JointLimits(tuple(-10.0 * (place + 1) for place in range(ENDLESS.get(kind, 0))), tuple(5.0 * (place + 1) for place in range(ENDLESS.get(kind, 0))))
+    limits = JointLimits(
+        tuple(-10.0 * (place + 1) for place in range(ENDLESS.get(kind, 0))),
+        tuple(5.0 * (place + 1) for place in range(ENDLESS.get(kind, 0))),
+    )
     made = Joint(
         name="j",
         type=kind,
@@ -75,13 +78,20 @@ def test_a_restriction_beside_a_joint_makes_the_joint_that_is_left(seed: int, ba
     assert (hinge.type, hinge.limits.upper) == (JointType.REVOLUTE, cylindrical.limits.upper[1:])
     slide = read([cylindrical], constraint("Parallel", turned, turned))
     assert (slide.type, slide.limits.upper) == (JointType.SLIDER, cylindrical.limits.upper[:1])
-    assert read([joint(JointType.REVOLUTE, T, (0.2,), back=back)], constraint("Angle", turned, turned @ SE3.rot_y(0.6), 0.6)).type is JointType.FIXED
+    assert (
+        read([joint(JointType.REVOLUTE, T, (0.2,), back=back)], constraint("Angle", turned, turned @ SE3.rot_y(0.6), 0.6)).type
+        is JointType.FIXED
+    )
     assert read([joint(JointType.SLIDER, T, (2.0,))], constraint("Distance", T, T, back=back)).type is JointType.FIXED
     slider = joint(JointType.SLIDER, T, (2.0,), back=back)
     assert read([slider], constraint("Parallel", T, T)) == slider  # what a slider keeps anyway
     universal = read([joint(JointType.BALL, T)], constraint("Perpendicular", turned, T, back=back))
     assert universal.type is JointType.UNIVERSAL
-    x = universal.T_parent_connector.rotation[:, 0] if universal.parent == "a" else (POSES["a"].inverse() @ POSES["b"]).rotation @ universal.T_parent_connector.rotation[:, 0]
+    x = (
+        universal.T_parent_connector.rotation[:, 0]
+        if universal.parent == "a"
+        else (POSES["a"].inverse() @ POSES["b"]).rotation @ universal.T_parent_connector.rotation[:, 0]
+    )
     axes = [(POSES["a"].inverse() @ frame_of).rotation[:, 2] for frame_of in (turned, T)]
     assert max(abs(float(x @ axis)) for axis in axes) == pytest.approx(1.0, abs=1e-9)
 
@@ -114,7 +124,15 @@ def test_what_is_no_joint_of_articad_is_refused_with_a_reason() -> None:
 
 def test_planar_faces_of_a_mesh_are_numbered_and_curved_ones_are_not_among_them() -> None:
     mesh = box(10.0, 20.0, 30.0)
-    sides = np.argmax(np.abs(np.cross(mesh.vertices[mesh.triangles[:, 1]] - mesh.vertices[mesh.triangles[:, 0]], mesh.vertices[mesh.triangles[:, 2]] - mesh.vertices[mesh.triangles[:, 0]])), axis=1)
+    sides = np.argmax(
+        np.abs(
+            np.cross(
+                mesh.vertices[mesh.triangles[:, 1]] - mesh.vertices[mesh.triangles[:, 0]],
+                mesh.vertices[mesh.triangles[:, 2]] - mesh.vertices[mesh.triangles[:, 0]],
+            )
+        ),
+        axis=1,
+    )
     below = mesh.vertices[mesh.triangles].mean(axis=1)[np.arange(12), sides] < 0
     mesh = TriMesh(mesh.vertices, mesh.triangles, np.where((sides == 2) & ~below, 1, np.where(sides == 2, 0, 2)).astype(np.int32))
     assert mesh.face is not None

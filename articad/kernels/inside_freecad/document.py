@@ -19,6 +19,10 @@ import Part
 
 Json = dict[str, Any]
 
+_KINDS = {"mm": "Distance", "deg": "Angle", "1": "Float"}  # FreeCAD's properties for the units of parameters
+_OWN_COLUMNS = ("Index", "Name", "Quantity")  # of a bill of materials
+_DENSITY = "Density of the material when articad wrote the document"
+_FIXED_MASS = "Mass when articad wrote the document; it does not follow the shape"
 FIRST_ID = 100_000  # beyond 5000, the end of FreeCAD's own random start
 
 
@@ -66,6 +70,7 @@ class _Writer:
         grounded = group.newObject("App::FeaturePython", "GroundedJoint")
         JointObject.GroundedJoint(grounded, self.parts[self.job["ground"]])
         self.joints = [self._joint(group, joint) for joint in self.job["joints"]]
+        self._bill()
         self.document.recompute()
         self.document.recompute()
         self._place()
@@ -93,7 +98,8 @@ class _Writer:
         values.Label = self.job["parameters_label"]
         for row in self.job["parameters"]:
             note = f"{row['description']} [{row['unit']}] {row['why']}".strip()
-            _float(values, f"p_{row['name']}", row["value"], "Parameters" if row["live"] else "Fixed parameters", note, live=row["live"])
+            group = "Parameters" if row["live"] else "Fixed parameters"
+            _number(values, f"p_{row['name']}", row["value"], group, note, live=row["live"], kind=_KINDS[row["unit"]])
         for row in self.job["parameters"]:
             if row["expression"]:
                 values.setExpression(f"p_{row['name']}", row["expression"])
@@ -109,7 +115,7 @@ class _Writer:
         for row in part["dimensions"]:
             name = f"d_{row['name']}"
             if name not in values.PropertiesList:
-                _float(values, name, row["value"], "Dimensions" if live else "Fixed dimensions", "", live=live)
+                _number(values, name, row["value"], "Dimensions" if live else "Fixed dimensions", "", live=live)
             setattr(values, name, row["value"])
             if row["expression"]:
                 values.setExpression(name, row["expression"])
@@ -143,6 +149,7 @@ class _Writer:
         item.Label2 = part["description"]
         _text(item, "ArticadPart", name, "Name of the part")
         _text(item, "ArticadMaterial", part["material"] or "", "Name of its material")
+        self._mass(part, item)
 
     def _shape(self, part: Json, container: Any) -> Any:
         kind = part["kind"]
@@ -221,6 +228,36 @@ class _Writer:
         for name, expression in connector["expressions"].items():
             system.setExpression(name, expression)
 
+    def _mass(self, part: Json, item: Any) -> None:
+        """Give a part its mass, which follows the volume of its shape."""
+        mass = part["mass"]
+        if mass is None:
+            return
+        shape = self.shapes[part["name"]]
+        if mass["density"] is not None and hasattr(shape, "Shape"):
+            _number(item, "ArticadDensity", mass["density"] * 1e-9, "articad", _DENSITY, live=False, kind="Density")  # kg/mm³
+            _number(item, "ArticadMass", mass["kg"], "articad", "Volume times density", live=False, kind="Mass")
+            item.setExpression("ArticadMass", f"{shape.Name}.Shape.Volume * 1 mm^3 * ArticadDensity")
+        else:
+            _number(item, "ArticadMass", mass["kg"], "articad", _FIXED_MASS, live=False, kind="Mass")
+
+    def _bill(self) -> None:
+        """Add FreeCAD's own bill of materials; FreeCAD fills in its own columns and keeps the expressions in the others."""
+        bill = self.job["bill"]
+        group = self.assembly.newObject("Assembly::BomGroup", bill["group"])
+        group.Label = "Bills of materials"
+        item = group.newObject("Assembly::BomObject", bill["object"])
+        item.Label = "Bill of materials"
+        item.columnsNames = [*_OWN_COLUMNS, *bill["columns"]]
+        item.detailParts = False
+        self.document.recompute()
+        labelled = {self.parts[part["name"]].Label: self.parts[part["name"]] for part in self.job["parts"]}
+        for row in range(2, 2 + len(labelled)):
+            part = labelled.get(str(item.get(f"B{row}"))) if f"B{row}" in item.getUsedCells() else None
+            for place, key in enumerate(bill["columns"].values()):
+                if part is not None and key in part.PropertiesList:
+                    item.set(f"{chr(ord('A') + len(_OWN_COLUMNS) + place)}{row}", f"={part.Name}.{key}")
+
     def _place(self) -> None:
         for part in self.job["parts"]:
             self.parts[part["name"]].Placement = placement(part["placement"])
@@ -296,8 +333,8 @@ def _with_unit(joint: Any, name: str) -> None:
         )
 
 
-def _float(item: Any, name: str, value: float, group: str, note: str, *, live: bool = True) -> None:
-    item.addProperty("App::PropertyFloat", name, group, note)
+def _number(item: Any, name: str, value: float, group: str, note: str, *, live: bool = True, kind: str = "Float") -> None:
+    item.addProperty(f"App::Property{kind}", name, group, note)
     setattr(item, name, value)
     if not live:
         item.setEditorMode(name, ["ReadOnly"])

@@ -47,6 +47,8 @@ def _look(document: Any, _: Json) -> Json:
         "connectors": {name: _connectors(item) for name, item in parts.items()},
         "boxes": {name: _box(item) for name, item in parts.items()},
         "volumes": {name: _volume(item) for name, item in parts.items()},
+        "masses": {name: _mass(item) for name, item in parts.items()},
+        "bill": _bill(document),
         "invalid": [item.Name for item in document.Objects if "Invalid" in item.State],
         "touched": [item.Name for item in document.Objects if "Touched" in item.State],
         "joints": {item.Name: str(item.JointType) for item in document.Objects if hasattr(item, "JointType")},
@@ -60,6 +62,14 @@ def _look(document: Any, _: Json) -> Json:
         "parameters": _parameters(document.getObject("Parameters")),
         "objects": sorted(f"{item.TypeId} {item.Name}" for item in document.Objects),
     }
+
+
+def _bill(document: Any) -> list[list[str]]:
+    """Return the rows of the bill of materials."""
+    sheets = [item for item in document.Objects if item.TypeId == "Assembly::BomObject"]
+    cells = {cell: str(sheet.get(cell)) for sheet in sheets for cell in sheet.getUsedCells()}
+    rows = sorted({int(cell[1:]) for cell in cells})
+    return [[cells.get(f"{column}{row}", "") for column in "ABCDEF"] for row in rows]
 
 
 def _parameters(values: Any) -> Json:
@@ -184,15 +194,20 @@ def _measured(document: Any) -> Json:
 
 def _shape_now(part: Any) -> Json:
     """Return whether a part has a shape, whether that is valid, its volume and its centre in the part's own frame [mm]."""
-    shape = _shape(part)
+    shape, mass = _shape(part), _mass(part)
     if shape is None:
         mesh = _mesh(part)
-        return {"kind": "nothing"} if mesh is None else {"kind": "mesh", "volume": mesh["volume"]}
+        return {"kind": "nothing"} if mesh is None else {"kind": "mesh", "volume": mesh["volume"], "mass": mass}
     if shape.isNull():
         return {"kind": "null"}
     solids = shape.Solids
     center = solids[0].CenterOfMass if len(solids) == 1 else App.Vector()
-    return {"kind": "shape", "valid": shape.isValid(), "solids": len(solids), "volume": shape.Volume, "center": list(center)}
+    return {"kind": "shape", "valid": shape.isValid(), "solids": len(solids), "volume": shape.Volume, "center": list(center), "mass": mass}
+
+
+def _mass(part: Any) -> float | None:
+    """Return the mass that the part states [kg]."""
+    return float(part.ArticadMass.getValueAs("kg")) if "ArticadMass" in part.PropertiesList else None
 
 
 def _seven(placement: Any) -> list[float]:
