@@ -1,7 +1,8 @@
 """Writes docs/reference/freecad-versions.md: what each FreeCAD here finds in the document of every example. `--check` only compares.
 
-Each document is written by the FreeCAD that articad uses, and once without FreeCAD. Every FreeCAD here then opens it, recomputes,
-measures each shape, solves, saves, and opens what it saved: `articad.export.freecad_look`.
+Each document is written by the FreeCAD that articad uses, with feature trees where the example has scripts for FreeCAD, and once without
+FreeCAD. Documents of recorded runs are opened as they were recorded. Every FreeCAD here then opens the document, recomputes, measures each
+shape, solves, saves, and opens what it saved: `articad.export.freecad_look`.
 """
 
 from __future__ import annotations
@@ -11,21 +12,23 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import articad as ac
-from articad.export.bundle import Bundle
 from articad.export.freecad import write_freecad, write_freecad_alone
-from articad.export.freecad_look import SAME, SOLVED_MM, differences, looked, verify
+from articad.export.freecad_look import SAME, SOLVED_MM, differences, judged, looked
 from articad.kernels import freecad_install
+from articad.kernels.freecad import FreeCADKernel
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "reference" / "freecad-versions.md"
 EXAMPLES = sorted(path.parent for path in (ROOT / "examples").glob("*/plan.json"))
+RECORDED = sorted((ROOT / "examples").glob("*/recording/export/freecad/*.FCStd"))
 HEAD = f"""\
 # FreeCAD versions
 
 <!-- Written by scripts/freecad_versions.py, which opens every document; do not edit. -->
 
-Every example, written as a FreeCAD document by FreeCAD and without it, and opened in each version. *Shapes* counts the parts whose
-shape is present, valid and one solid, with volume and centre equal to articad's within {SAME:g}, when the document is opened, recomputed,
+Every example, written as a FreeCAD document by FreeCAD and without it, and opened in each version. Parts with scripts for FreeCAD are also
+written with their feature trees. The document of a recorded run is opened as it was recorded. *Shapes* counts the parts whose
+shape is present, valid and one solid, with volume, centre and stated mass equal to articad's within {SAME:g}, when the document is opened, recomputed,
 saved and opened again. *Solver* is `agrees` if the assembly's solver returns 0 and moves no part by more than {SOLVED_MM:g} mm.
 """
 
@@ -34,28 +37,42 @@ def page() -> tuple[str, list[str]]:
     """Return the page, and what is wrong."""
     versions = freecad_install.installed()
     wrong: list[str] = []
-    rows = [row for folder in EXAMPLES for row in _rows(folder, versions, wrong)]
+    rows = []
+    for name, by, made, content in _documents(versions[0]):
+        rows.append(_row(name, by, made, content, versions, wrong))
+        print(rows[-1], file=sys.stderr, flush=True)
     names = [f"FreeCAD {freecad.version_text}" for freecad in versions]
     head = [f"| example | written by | {' | '.join(f'{name}: shapes | solver' for name in names)} |", "|---|---|" + "---|---|" * len(names)]
     return "\n".join([HEAD, *head, *rows]) + "\n", wrong
 
 
-def _rows(folder: Path, versions: tuple[freecad_install.FreeCAD, ...], wrong: list[str]) -> Iterator[str]:
-    made = ac.build(ac.AssemblyPlan.load(folder / "plan.json"), folder / "parts")
-    kinds = (
-        (f"FreeCAD {versions[0].version_text}", write_freecad(made, freecad=versions[0])),
-        ("articad alone", write_freecad_alone(made)),
-    )
-    for by, bundle in kinds:
-        cells = [cell for freecad in versions for cell in _cells(made, bundle, freecad, wrong)]
-        yield f"| {folder.name} | {by} | {' | '.join(cells)} |"
+def _documents(freecad: freecad_install.FreeCAD) -> Iterator[tuple[str, str, ac.Assembly, bytes]]:
+    """Yield each document: the example, who wrote it, what it has to hold, and its content."""
+    by = f"FreeCAD {freecad.version_text}"
+    for folder in EXAMPLES:
+        plan = ac.AssemblyPlan.load(folder / "plan.json")
+        made = ac.build(plan, folder / "parts")
+        for writer, bundle in ((by, write_freecad(made, freecad=freecad)), ("articad alone", write_freecad_alone(made))):
+            yield folder.name, writer, made, bundle.files[bundle.main]
+        if any((folder / "parts").glob("*.freecad.py")):
+            kernel = FreeCADKernel(timeout=300.0, probe_timeout=600.0)  # a busy machine is no failure
+            made = ac.build(plan, folder / "parts", kernel=kernel)
+            bundle = write_freecad(made, freecad=freecad)
+            yield folder.name, f"{by}, feature trees", made, bundle.files[bundle.main]
+    for path in RECORDED:
+        run = path.parents[2]
+        yield run.parent.name, "its recorded run", ac.read(run), path.read_bytes()
 
 
-def _cells(made: ac.Assembly, bundle: Bundle, freecad: freecad_install.FreeCAD, wrong: list[str]) -> tuple[str, str]:
-    content = bundle.files[bundle.main]
-    findings = verify(content, made, freecad)
-    wrong += map(str, findings)
+def _row(name: str, by: str, made: ac.Assembly, content: bytes, versions: tuple[freecad_install.FreeCAD, ...], wrong: list[str]) -> str:
+    cells = [cell for freecad in versions for cell in _cells(made, content, freecad, wrong)]
+    return f"| {name} | {by} | {' | '.join(cells)} |"
+
+
+def _cells(made: ac.Assembly, content: bytes, freecad: freecad_install.FreeCAD, wrong: list[str]) -> tuple[str, str]:
     seen = looked(content, freecad, parts=len(made.parts))
+    findings = judged(seen, made, freecad)
+    wrong += map(str, findings)
     stages = [seen[when][stage] for when in ("first", "again") for stage in ("opened", "recomputed")]
     right = sum(not any(list(differences(stage.get(name), part)) for stage in stages) for name, part in made.parts.items())
     return f"{right} of {len(made.parts)}", "agrees" if "W_FREECAD_SOLVER" not in findings.codes else "disagrees"

@@ -49,6 +49,12 @@ def verify(content: bytes, assembly: Assembly, freecad: FreeCAD) -> Findings:
         report = looked(content, freecad, parts=len(assembly.parts))
     except OSError as error:
         return Findings([_error("assembly", f"{version} cannot open the document: {error}.")])
+    return judged(report, assembly, freecad)
+
+
+def judged(report: Json, assembly: Assembly, freecad: FreeCAD) -> Findings:
+    """Return the findings of `verify` for what `looked` found."""
+    version = f"FreeCAD {freecad.version_text}"
     found = [finding for when, seen in report.items() for finding in _compared(seen, assembly, f"{version}, {_WHEN[when]}")]
     return Findings(_once(found))
 
