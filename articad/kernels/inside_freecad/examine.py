@@ -49,6 +49,7 @@ def _look(document: Any, _: Json) -> Json:
         "volumes": {name: _volume(item) for name, item in parts.items()},
         "masses": {name: _mass(item) for name, item in parts.items()},
         "bill": _bill(document),
+        "editable": {item.Label: _editable(item) for item in document.Objects if item.TypeId == "App::VarSet"},
         "invalid": [item.Name for item in document.Objects if "Invalid" in item.State],
         "touched": [item.Name for item in document.Objects if "Touched" in item.State],
         "joints": {item.Name: str(item.JointType) for item in document.Objects if hasattr(item, "JointType")},
@@ -62,6 +63,12 @@ def _look(document: Any, _: Json) -> Json:
         "parameters": _parameters(document.getObject("Parameters")),
         "objects": sorted(f"{item.TypeId} {item.Name}" for item in document.Objects),
     }
+
+
+def _editable(values: Any) -> list[str]:
+    """Return the values of a VarSet that a user can change and that follow nothing."""
+    own = [name for name in values.PropertiesList if name[:2] in ("p_", "d_") and "ReadOnly" not in values.getEditorMode(name)]
+    return sorted(set(own) - {path.lstrip(".") for path, _ in values.ExpressionEngine})
 
 
 def _bill(document: Any) -> list[list[str]]:
