@@ -30,7 +30,7 @@ _SHOWN = (  # besides parts and assemblies, objects with a shape of their own
 )
 _MESH_HEADER = struct.pack("<II", 0xA0B0C0D0, 0x010000) + b"MESH-" * 51 + b"\n"  # FreeCAD's own header, before the counts
 _NO_FACET = 0xFFFFFFFF  # marks an edge of only one facet
-_GROUPS = ("App::Part", "App::Link", "Assembly::AssemblyObject", "Assembly::JointGroup")
+_GROUPS = ("App::Part", "App::Link", "Assembly::AssemblyObject", "Assembly::JointGroup", "Assembly::BomGroup", "Assembly::BomObject")
 
 
 @dataclass(frozen=True)
