@@ -66,6 +66,15 @@ def build(part):
     part.document.recompute()
     return part.body, {}
 """
+SWEPT = """
+def build(part):
+    outline = part.sketch("YZ", at=(0, 0, 0))
+    part.rectangle(outline, "-thickness / 2", "-thickness / 2", "thickness", "thickness")
+    way = part.sketch("XY")
+    part.path(way, [(0, 0), ("width", 0), ("width", "10 * hole_count"), (0, "10 * hole_count")])
+    part.sweep(outline, way)
+    return part.body, {}
+"""
 CYCLE = OWN.replace("(block, [])", "(part.body.Tip, [])")
 TOO_LARGE = OWN.replace("0.1 *", "3 *")
 UNTIED = GOOD.replace('"thickness"))', "5))").replace('2, "thickness"', "2, 5")
@@ -165,3 +174,9 @@ def test_the_judgement_of_a_tree_needs_no_freecad() -> None:
     assert found.count("E_NOT_EDITABLE") == 3
     assert found.count("E_FEATURE_OFF_TIP") == 1
     assert [finding.code for finding in tree_findings("plate", {"ok": False, "bodies": 2})] == ["E_NOT_EDITABLE"]
+
+
+def test_a_sweep_follows_its_path_round_mitred_corners() -> None:
+    built = build(SWEPT)
+    assert built.solid.volume == pytest.approx(5.0 * 5.0 * (40.0 + 40.0 + 40.0), rel=1e-9)  # outline times the length of the centre line
+    assert built.solid.bbox.ravel() == pytest.approx([0.0, -2.5, -2.5, 42.5, 42.5, 2.5], abs=1e-6)

@@ -157,6 +157,18 @@ class Authoring:
         for number, (x, y) in enumerate(points):
             self._fix(sketch, first + number, 1, x, y, f"corner{number + 1}")
 
+    def path(self, sketch: Any, points: Sequence[tuple[Value, Value]]) -> None:
+        """Draw straight lines from point to point, for a sweep; at least two points, and no outline."""
+        here = [App.Vector(self.number(x), self.number(y), 0) for x, y in points]
+        first = sketch.GeometryCount
+        for number in range(len(points) - 1):
+            sketch.addGeometry(Part.LineSegment(here[number], here[number + 1]))
+        for number in range(len(points) - 2):
+            sketch.addConstraint(Sketcher.Constraint("Coincident", first + number, 2, first + number + 1, 1))
+        for number, (x, y) in enumerate(points):
+            last = number == len(points) - 1
+            self._fix(sketch, first + number - last, 2 if last else 1, x, y, f"point{number + 1}")
+
     def rectangle(self, sketch: Any, x: Value, y: Value, width: Value, height: Value) -> None:
         """Draw a rectangle from its lower left corner."""
         right, top = _sum(x, width), _sum(y, height)
@@ -246,6 +258,14 @@ class Authoring:
         for other in others:
             other.Visibility = False
         return self._done(loft)
+
+    def sweep(self, sketch: Any, path: Any, *, cut: bool = False, name: str = "Sweep") -> Any:
+        """Move an outline along a path, with mitred corners; the path starts in the outline's plane. `cut` takes away."""
+        sweep = self.body.newObject("PartDesign::SubtractivePipe" if cut else "PartDesign::AdditivePipe", name)
+        sweep.Profile, sweep.Spine = sketch, (path, [f"Edge{number + 1}" for number in range(path.GeometryCount)])
+        sweep.Transition = "Right corner"
+        path.Visibility = False
+        return self._done(sweep)
 
     def sphere(self, center: Sequence[Value], radius: Value, *, cut: bool = False, name: str = "Sphere") -> Any:
         """Add or cut a sphere."""
