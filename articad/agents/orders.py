@@ -2,8 +2,9 @@
 
 Decided by proof, from the round surfaces about the axes of joints and from the probe of dimensions. A script departs if a dimension of its
 part has no effect, or if a bore or pin about a joint's axis has a diameter that none of its dimensions states. What else is wrong about
-such a part may follow from that, so it waits for the script. If a fit is off by just what both surfaces differ, and both have the
-diameters that were ordered, the plan is wrong. Everything else stays open.
+such a part may follow from that, so it waits for the script. A hole or slot that is absent from a script that follows its order was not
+ordered: the plan is wrong. It is wrong as well if a fit is off by just what both surfaces differ, and both have the diameters that were
+ordered. Everything else stays open.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ __all__ = ["addressed", "source_of"]
 
 _FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
 _CODES: Final = _FITS | {"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FLOATING", "E_NOT_TOUCHING"}
+_CUT: Final = frozenset({"unbored_hole", "missing_slot"})  # causes that a cut mends: one that was ordered, or one that must be
 _ROUND: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
 _ON_AXIS_MM: Final = 0.2  # a surface whose axis is farther away is not about the joint's axis
 _ALIKE: Final = 0.3  # difference of radii, as a share of the larger
@@ -98,15 +100,19 @@ def _addressed(
     joints: Iterable[Joint],
     surfaces: Mapping[str, Sequence[_Round]],
 ) -> Finding:
-    is_decided = finding.cause is not None and finding.route == "code"
-    if finding.code not in _CODES or is_decided:
+    if finding.code not in _CODES:
         return finding
     guilty = [source for name in finding.parts if (source := source_of(name, resolved)) in departed]
     if guilty:
-        hint = f"{departed[guilty[0]]} Build {guilty[0]} as its specification states."
-        return replace(finding, route="code", where=f"parts.{guilty[0]}", hint=hint)
+        is_named = finding.route == "code" and finding.where == f"parts.{guilty[0]}"
+        more = finding.hint if is_named else f"Build {guilty[0]} as its specification states."
+        return replace(finding, route="code", where=f"parts.{guilty[0]}", hint=f"{departed[guilty[0]]} {more}")
+    if finding.cause in _CUT:
+        culprit = finding.where.removeprefix("parts.")
+        follows = f"As far as it can be measured, the script of {culprit} follows its order, so the order is at fault"
+        return replace(finding, route="design", hint=f"{follows}: {finding.hint[0].lower()}{finding.hint[1:]}")
     between = [joint.name for joint in joints if {joint.parent, joint.child} == set(finding.parts)]
-    if finding.code in _FITS and finding.cause is None and any(_explains(surfaces[name], finding) for name in between):
+    if finding.code in _FITS and any(_explains(surfaces[name], finding) for name in between):
         return replace(finding, route="design")
     return finding
 

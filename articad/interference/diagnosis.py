@@ -7,6 +7,7 @@ plan's author (design) or the script's (code), which number to change, and by ho
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -34,6 +35,9 @@ END_MM = 0.05  # an overlap that ends this close to a part's own end is at that 
 LONG_SHARE = 0.5  # of a part's length: a part that penetrates another by more is not merely too long
 NEAR_REST = np.deg2rad(20)  # a part that turns on its own face collides with its neighbour early
 FACE_SHARE = 0.1  # of a part's size: an axis closer to its surface is on its face
+EDGE_SHARE = 0.5  # of a part's reach from the axis: its edge beside the axis is nearer
+SHIFT_SHARE = 1.05  # of the length by which an axis must move: surfaces that only touch do not clear each other
+TRIED_POSES = 13  # at which a proposed axis is tried
 PARALLEL = 1e-3  # |sine| of the angle between axes whose distance is called a pitch
 _EXPLAINED = ("E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP", "E_MOTION_COLLISION")
 _TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
@@ -155,7 +159,7 @@ class PairCase:
                     "missing_slot",
                     "code",
                     f"{self._other(name)}, {thickness:.4g} mm thick, is inside solid material of {name}.",
-                    f"Cut a slot {width:.4g} mm wide into {name} where {self._other(name)} rotates.",
+                    f"Cut a slot {width:.4g} mm wide into {name} where {self._other(name)} rotates; remove at least {self._extent(name)}.",
                     value=thickness,
                     limit=width,
                     culprit=name,
@@ -219,21 +223,29 @@ class PairCase:
         joint = self.direct
         if joint is None or joint.type not in _TURNING or len(self.moving) != 1:
             return None
-        if abs(self._entry() - self.chain.freedoms[-1].rest) > NEAR_REST:
+        entry = self._entry()
+        if abs(entry - self.chain.freedoms[-1].rest) > NEAR_REST:
             return None
         axis_a, axis_b = Core(self._frame_of(joint)), Core(joint.T_child_connector.matrix)
         if joint.parent != self.a:
             axis_b = Core(joint.T_parent_connector.matrix)
-        inset, name = min((_face_distance(axis_a, self.body_a), self.a), (_face_distance(axis_b, self.body_b), self.b))
-        if inset > FACE_SHARE * self.scene.bodies[name].diagonal:
+        inset, name, axis = min(
+            (_face_distance(axis, body), name, axis) for name, axis, body in ((self.a, axis_a, self.body_a), (self.b, axis_b, self.body_b))
+        )
+        body = self.scene.bodies[name]
+        if inset > FACE_SHARE * body.diagonal:
             return None
+        reach = float(axis.radii(body.mesh.vertices).max())
+        if self._first_contact(axis_a, entry) > EDGE_SHARE * reach:
+            return None  # an end far from the axis enters first: the neighbour is in its way, not the edge beside the axis
         deepest = self._deepest_along()
         return self._because(
             "pivot_on_face",
             "design",
             f"The axis of {joint.name} lies {inset:.4g} mm from a face of {name}, so its edge rotates into {self._other(name)} "
             f"up to {deepest:.4g} mm deep.",
-            f"Move the axis {deepest:.4g} mm out of the face, towards the side to which it opens, or round the edge by the same amount.",
+            self._shift_of_axis(joint, inset, deepest)
+            or f"Move the axis {deepest:.4g} mm out of the face, towards the side to which it opens, or round the edge by the same amount.",
             value=inset,
             limit=inset + deepest,
         )
@@ -272,6 +284,16 @@ class PairCase:
             return None
         return _Region(np.asarray(largest.to_mesh64().vert_properties)[:, :3], float(largest.volume()), largest)
 
+    def _extent(self, name: str) -> str:
+        """Return the extent of the overlap in a part's own frame, as text."""
+        assert self.region is not None
+        points = self.region.vertices
+        if name == self.b:
+            inverse = np.linalg.inv(self.T)
+            points = points @ inverse[:3, :3].T + inverse[:3, 3]
+        ranges = zip("xyz", points.min(axis=0), points.max(axis=0), strict=True)
+        return ", ".join(f"{axis} {low + 0.0:.4g} to {high + 0.0:.4g}" for axis, low, high in ranges) + f" mm (in the frame of {name})"
+
     def _axis(self) -> Core | None:
         """Return the axis of the joint between the two, in the first part's frame."""
         if self.direct is None or self.direct.type in (JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL):
@@ -306,6 +328,38 @@ class PairCase:
             overlaps = float(intersection(self.body_a, self.body_b, T).volume()) > UNRELATED_VOLUME_MM3
             free, hit = (free, middle) if overlaps else (middle, hit)
         return hit
+
+    def _shift_of_axis(self, joint: Joint, inset: float, depth: float) -> str:
+        """Return advice on where the axis should be so that the two clear each other over its range; empty if no trial does.
+
+        Tried are shifts d along x and y of the joint's connector, by the lengths that the fault suggests. With both connectors shifted, the
+        child at q is Trans(d) · T(q) · T(rest)⁻¹ · Trans(−d) · T(rest), in the parent's frame: it turns about the new axis, and rests as before.
+        """
+        freedom = self.chain.freedoms[-1]
+        lower, upper = max(freedom.lower, freedom.rest - np.pi), min(freedom.upper, freedom.rest + np.pi)
+        at = [self.chain.matrix([*self.values[:-1], q]) for q in (freedom.rest, *np.linspace(lower, upper, TRIED_POSES))]
+        rest, *moved = at if joint.parent == self.a else [np.linalg.inv(T) for T in at]
+        parent, child = self.scene.bodies[joint.parent], self.scene.bodies[joint.child]
+        frame = joint.T_parent_connector.matrix
+        lengths = sorted(SHIFT_SHARE * length for length in (inset, depth, inset + depth, 2.0 * (inset + depth)) if length > END_MM)
+        for length, direction in itertools.product(lengths, (-frame[:3, 0], frame[:3, 0], -frame[:3, 1], frame[:3, 1])):
+            there, back = np.eye(4), np.eye(4)
+            there[:3, 3], back[:3, 3] = length * direction, -length * direction
+            turns = (there @ T @ np.linalg.inv(rest) @ back @ rest for T in moved)
+            if all(float(intersection(parent, child, SE3.from_matrix(T)).volume()) <= UNRELATED_VOLUME_MM3 for T in turns):
+                x, y, z = (f"{value + 0.0:.4g}" for value in np.round(length * direction, 6))
+                return (
+                    f"Move the axis by ({x}, {y}, {z}) mm in the frame of {joint.parent}, at both connectors: then {self.a} and {self.b} "
+                    f"clear each other at {TRIED_POSES} poses of its range."
+                )
+        return ""
+
+    def _first_contact(self, axis: Core, entry: float) -> float:
+        """Return the distance from an axis at which the two overlap just after `entry` [mm]."""
+        hit = self.values[-1]
+        T = SE3.from_matrix(self.chain.matrix([*self.values[:-1], entry + 0.05 * (hit - entry)]))
+        points = np.asarray(intersection(self.body_a, self.body_b, T).to_mesh64().vert_properties)[:, :3]
+        return float(axis.radii(points).min()) if len(points) else 0.0
 
     def _deepest_along(self) -> float:
         """Return the largest depth between this pose and the bound, sampled at a few poses [mm]."""

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import manifold3d as m3
+import numpy as np
 import pytest
+from numpy.random import default_rng
 
+from articad.arrays import FloatArray
 from articad.connectors import SE3
 from articad.findings import Findings
 from articad.geometry import TriMesh, box, cylinder, merged
@@ -182,3 +186,28 @@ def test_the_hint_of_a_drawer_that_is_too_long_says_by_how_much() -> None:
 def test_the_hint_of_axes_too_close_gives_the_distance_they_need() -> None:
     (finding, *_) = [finding for finding in findings(PINS, rods(50.0)) if finding.cause == "pitch"]
     assert finding.limit == pytest.approx(2 * math.hypot(30, 2))
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("carries_the_lid", [True, False])
+def test_an_axis_moved_as_the_hint_says_clears_the_two_parts(seed: int, carries_the_lid: bool) -> None:
+    """A lid of random size on a wall, turned in space, with its axis inside the wall, too low; either part may be the parent."""
+    rng = default_rng(seed)
+    length, thick, wall, inset, low = rng.uniform((60, 6, 8, 3, 4), (140, 14, 14, 6, 9)).tolist()
+    T = SE3.exp(np.concatenate([rng.uniform(-50, 50, 3), rng.normal(size=3)]))
+    meshes = {
+        "wall": box(60, wall, 80, center=False).transformed(T @ at(-30, 0, -80)),
+        "lid": box(60, length, thick, center=False).transformed(T @ at(-30, 0, 0.2)),
+    }
+    frame = T @ SE3.from_axes([0, inset, -low], [1.0 if carries_the_lid else -1.0, 0, 0], [0, 1.0, 0])
+    parent, child = ("wall", "lid") if carries_the_lid else ("lid", "wall")
+
+    def hinge(shift: FloatArray) -> Joint:
+        moved = SE3.from_translation(shift) @ frame
+        return joint("hinge", "revolute", parent, child, at_parent=moved, at_child=moved, lower=(0.0,), upper=(1.7,))
+
+    (finding,) = findings(meshes, [hinge(np.zeros(3))])
+    assert finding.cause == "pivot_on_face"
+    told = re.search(rf"Move the axis by \((\S+), (\S+), (\S+)\) mm in the frame of {parent}", finding.hint)
+    assert told, finding.hint
+    assert not findings(meshes, [hinge(np.array([float(number) for number in told.groups()]))])
