@@ -359,7 +359,9 @@ def test_a_hole_that_was_not_bored_goes_to_the_script_with_the_number(tmp_path: 
     llm = wheel("frame", part__wheel__1=fenced(SOLID), part__wheel__2=fenced(WHEEL))
     run = made(tmp_path, llm)
 
-    assert "post is 6 mm deep in solid material of wheel, which has no hole there. Bore wheel" in said(llm, "part/wheel/2")
+    told = said(llm, "part/wheel/2")
+    assert "post is 6 mm deep in solid material of wheel, which has no hole there." in told
+    assert "wheel does not follow its dimension 'bore_radius'. Bore wheel along the axis with a diameter of 6.4 mm" in told
     assert (run.round(1) or {})["code"]["wheel"][0]["cause"] == "unbored_hole"
     assert not [step for step in llm.steps if step.startswith("rollback")]
 
