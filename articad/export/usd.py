@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
@@ -59,7 +60,9 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     equal articad's, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other
     degrees locked.
     Couplings of joints of one kind are written as NewtonMimicAPI, velocity limits, damping and friction of joints as NewtonJointAPI (the
-    velocity also as PhysxJointAPI), friction of surfaces as PhysicsMaterialAPI.
+    velocity also as PhysxJointAPI), friction of surfaces as PhysicsMaterialAPI. Names of parts are labels of the class "class", names of
+    materials of the class "material" (SemanticsLabelsAPI). A mesh that several shapes have is written once, as an abstract prim to which
+    they refer.
 
     Args:
         assembly: What to write.
@@ -74,7 +77,7 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    links, joints = Names(("joints", "materials")), Names(("to_world",))
+    links, joints = Names(("joints", "materials", "meshes")), Names(("to_world",))
     root = valid_name(assembly.name)
     bodies = {name: links.claim(name) for name in assembly.parts}
     names = {joint.name: joints.claim(joint.name) for joint in assembly.joints}
@@ -98,10 +101,13 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     materials = _Materials(f"/{root}/materials")
     free = {joint.child for joint in assembly.joints if joint.type is JointType.FREE and joint.name not in closing}
     lines.append(f'def Xform "{root}"\n{{' if free else f'def Xform "{root}" (\n    prepend apiSchemas = [{_ROOT}]\n)\n{{')
+    shapes = {name: _Shapes.of(part, colliding[name], draws=kind != "solid") for name, part in assembly.parts.items()}
+    meshes = _Meshes(f"/{root}/meshes", shapes.values())
     for name, part in assembly.parts.items():
         schemas = (_ROOT,) if name in free else ()
-        surface = materials.surface(frictions[name])
-        lines += _indented(_body(part, bodies[name], rest[name], colliding[name], materials, surface, schemas, draws=kind != "solid"))
+        surface = materials.surface(frictions[name], part.material)
+        lines += _indented(_body(part, bodies[name], rest[name], shapes[name], meshes, materials, surface, schemas))
+    lines += _indented(meshes.prims())
     lines += _indented(materials.prims())
     lines += _indented(['def Scope "joints"', "{"])
     ground = f"</{root}/{bodies[assembly.ground]}>"
@@ -127,34 +133,81 @@ _HEADER = """#usda 1.0
 """
 
 
+class _Shapes(NamedTuple):
+    """The shapes of a part: what is drawn, what collides, and the triangles of those that are meshes, by identity of the shape."""
+
+    visuals: tuple[Shape, ...]
+    collisions: tuple[Shape, ...]
+    drawn: dict[int, str]
+    colliding: dict[int, str]
+
+    @classmethod
+    def of(cls, part: Part, collisions: tuple[Shape, ...], *, draws: bool) -> _Shapes:
+        """Return the shapes; with `draws`, visual meshes of a built part are simplified."""
+        visuals = part.visuals or part.collisions
+        looks = drawn_shapes(part) if draws else visuals
+        drawn = {id(one): _triangles(look.placed, flat=False) for one, look in zip(visuals, looks, strict=True)}
+        colliding = {id(one): _triangles(one.placed, flat=True) for one in collisions if _form(one, "", None) is None}
+        return cls(visuals, collisions, drawn, colliding)
+
+
+class _Meshes:
+    """Triangles of meshes. What several shapes have is written once, as an abstract prim to which their prims refer."""
+
+    def __init__(self, path: str, shapes: Iterable[_Shapes]) -> None:
+        self._path = path
+        counts = Counter(text for one in shapes for text in (*one.drawn.values(), *one.colliding.values()))
+        self._names = {text: f"mesh_{index}" for index, text in enumerate(text for text, count in counts.items() if count > 1)}
+
+    def head(self, text: str) -> list[str]:
+        """Return the reference of a prim with these triangles, if there is one."""
+        name = self._names.get(text)
+        return [] if name is None else [f"    prepend references = <{self._path}/{name}>"]
+
+    def fields(self, text: str) -> list[str]:
+        """Return the triangles, unless the prim refers to them."""
+        return [] if text in self._names else text.split("\n")
+
+    def prims(self) -> list[str]:
+        """Return the scope of the abstract prims."""
+        if not self._names:
+            return []
+        rows = [row for text, name in self._names.items() for row in (f'def Mesh "{name}"', "{", *text.split("\n"), "}")]
+        return ['class Scope "meshes"', "{", *_indented(rows), "}"]
+
+
 class _Materials:
-    """Visual materials by colour, and physical materials by coefficient of friction."""
+    """Visual materials by colour, and physical materials by coefficient of friction; both also by the material's name."""
 
     def __init__(self, path: str) -> None:
         self._path = path
-        self._colors: dict[str, str] = {}
-        self._frictions: dict[float, str] = {}
+        self._names = Names()
+        self._colors: dict[tuple[str, str | None], str] = {}
+        self._frictions: dict[tuple[float, str | None], str] = {}
 
-    def look(self, color: str) -> str:
-        """Return the path of the material of a colour."""
-        name = self._colors.setdefault(color, f"color_{color.removeprefix('#')}")
-        return f"{self._path}/{name}"
+    def look(self, color: str, material: str | None) -> str:
+        """Return the path of the visual material of a colour."""
+        key = color, material
+        if key not in self._colors:
+            self._colors[key] = self._names.claim("_".join(filter(None, (material, "color", color.removeprefix("#")))))
+        return f"{self._path}/{self._colors[key]}"
 
-    def surface(self, friction: float | None) -> str | None:
-        """Return the path of the material of a coefficient of friction; None if it is not known."""
+    def surface(self, friction: float | None, material: str | None) -> str | None:
+        """Return the path of the physical material of a coefficient of friction; None if it is not known."""
         if friction is None:
             return None
-        name = self._frictions.setdefault(friction, valid_name(f"friction_{number(friction)}"))
-        return f"{self._path}/{name}"
+        key = friction, material
+        if key not in self._frictions:
+            self._frictions[key] = self._names.claim("_".join(filter(None, (material, "friction", number(friction)))))
+        return f"{self._path}/{self._frictions[key]}"
 
     def prims(self) -> list[str]:
         """Return the scope that holds them."""
         lines = ['def Scope "materials"', "{"]
-        for color, name in self._colors.items():
+        for (color, material), name in self._colors.items():
             shader = f"{self._path}/{name}/surface"
             lines += _indented([
-                f'def Material "{name}"',
-                "{",
+                *_material(name, material),
                 f"    token outputs:surface.connect = <{shader}.outputs:surface>",
                 '    def Shader "surface"',
                 "    {",
@@ -165,12 +218,9 @@ class _Materials:
                 "    }",
                 "}",
             ])  # fmt: skip
-        for friction, name in self._frictions.items():
+        for (friction, material), name in self._frictions.items():
             lines += _indented([
-                f'def Material "{name}" (',
-                '    prepend apiSchemas = ["PhysicsMaterialAPI"]',
-                ")",
-                "{",
+                *_material(name, material, "PhysicsMaterialAPI"),
                 f"    float physics:dynamicFriction = {number(friction)}",
                 f"    float physics:staticFriction = {number(friction)}",
                 "}",
@@ -178,19 +228,25 @@ class _Materials:
         return [*lines, "}"]
 
 
+def _material(name: str, material: str | None, *schemas: str) -> list[str]:
+    """Return the first lines of a material, with its name as a label."""
+    listed = ", ".join(f'"{one}"' for one in (*schemas, *(["SemanticsLabelsAPI:material"] if material else [])))
+    head = [f'def Material "{name}" (', f"    prepend apiSchemas = [{listed}]", ")", "{"] if listed else [f'def Material "{name}"', "{"]
+    return [*head, f"    token[] semantics:labels:material = ['{valid_name(material)}']"] if material else head
+
+
 def _body(
     part: Part,
     name: str,
     T: SE3,
-    collisions: tuple[Shape, ...],
+    shapes: _Shapes,
+    meshes: _Meshes,
     materials: _Materials,
     surface: str | None,
     schemas: Iterable[str] = (),
-    *,
-    draws: bool,
 ) -> list[str]:
-    """Return a rigid body with its visual and its collision shapes in two scopes; visual meshes of a built part are simplified."""
-    listed = ", ".join(['"PhysicsRigidBodyAPI"', '"PhysicsMassAPI"', *schemas])
+    """Return a rigid body with its visual and its collision shapes in two scopes."""
+    listed = ", ".join(['"PhysicsRigidBodyAPI"', '"PhysicsMassAPI"', '"SemanticsLabelsAPI:class"', *schemas])
     mass = part.mass if part.mass is not None and part.mass.mass > 0 else None
     lines = [
         f'def Xform "{name}" (',
@@ -198,20 +254,26 @@ def _body(
         ")",
         "{",
         *_indented(_mass(mass)),
+        f"    token[] semantics:labels:class = ['{name}']",
         f"    double3 xformOp:translate = {_tuple(T.translation / MM_PER_M)}",
         f"    quatd xformOp:orient = {_quaternion(T)}",
         '    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
     ]
-    visuals = part.visuals or part.collisions
-    looks = {id(one): look for one, look in zip(visuals, drawn_shapes(part) if draws else visuals, strict=True)}
-    surfaces = {id(one): one for one in collisions if _form(one, "", None) is None} | looks
-    written = {key: _surface(one.placed) for key, one in surfaces.items()}  # a visual shape may also be a collision shape
-    drawings = [_mesh(f"visual_{index}", written[id(one)], one.color or part.color, materials) for index, one in enumerate(visuals)]
-    shapes = [
-        _form(one, f"collision_{index}", surface) or _mesh(f"collision_{index}", written[id(one)], None, materials, surface)
-        for index, one in enumerate(collisions)
+    drawings = [
+        _mesh(
+            f"visual_{index}",
+            shapes.drawn[id(one)],
+            meshes,
+            materials.look(one.color or part.color, part.material),
+            one.color or part.color,
+        )
+        for index, one in enumerate(shapes.visuals)
     ]
-    for scope, prims, fields in (("visuals", drawings, []), ("collisions", shapes, ['    uniform token purpose = "guide"'])):
+    colliding = [
+        _form(one, f"collision_{index}", surface) or _mesh(f"collision_{index}", shapes.colliding[id(one)], meshes, surface)
+        for index, one in enumerate(shapes.collisions)
+    ]
+    for scope, prims, fields in (("visuals", drawings, []), ("collisions", colliding, ['    uniform token purpose = "guide"'])):
         if prims:
             lines += _indented([f'def Scope "{scope}"', "{", *fields, *_indented(line for prim in prims for line in prim), "}"])
     return [*lines, "}"]
@@ -284,38 +346,41 @@ def _bound(material: str | None, purpose: str = "") -> list[str]:
     return [] if material is None else [f"    rel material:binding{':' + purpose if purpose else ''} = <{material}>"]
 
 
-def _surface(mesh: TriMesh) -> list[str]:
-    """Return the triangles of a mesh, with normals that are smooth but for creases."""
+def _triangles(mesh: TriMesh, *, flat: bool) -> str:
+    """Return the triangles of a mesh with their normals: one for each triangle, or one for each corner, smooth but for creases."""
     points = np.round(mesh.vertices / MM_PER_M, _POINT_DIGITS)
-    _, normals, indices = shaded(mesh)
+    if flat:
+        twice = mesh.normals_of_twice_area
+        normals = twice / np.maximum(np.linalg.norm(twice, axis=1), np.finfo(float).tiny)[:, None]
+        indices, interpolation = np.arange(len(normals)), "uniform"
+    else:
+        (_, normals, indices), interpolation = shaded(mesh), "faceVarying"
     normals, places = np.unique(np.round(normals, _NORMAL_DIGITS) + 0.0, axis=0, return_inverse=True)
-    return [
+    return "\n".join([
         f"    float3[] extent = [{_tuple(points.min(axis=0))}, {_tuple(points.max(axis=0))}]",
         f"    int[] faceVertexCounts = [{', '.join('3' * len(mesh.triangles))}]",
         f"    int[] faceVertexIndices = [{', '.join(map(str, mesh.triangles.ravel().tolist()))}]",
         f"    point3f[] points = {_points(points)}",
         f"    normal3f[] primvars:normals = {_points(normals)} (",
-        '        interpolation = "faceVarying"',
+        f'        interpolation = "{interpolation}"',
         "    )",
         f"    int[] primvars:normals:indices = [{', '.join(map(str, places.ravel()[indices].tolist()))}]",
-    ]
+        '    uniform token subdivisionScheme = "none"',
+    ])  # fmt: skip
 
 
-def _mesh(name: str, triangles: list[str], color: str | None, materials: _Materials, surface: str | None = None) -> list[str]:
-    """Return a mesh: drawn in a colour, or for collision by its convex hull."""
-    drawn_ = color is not None
-    own = () if drawn_ else ("PhysicsCollisionAPI", "PhysicsMeshCollisionAPI")
-    bound = materials.look(color) if color is not None else surface
-    listed = _schemas(*own, bound=bound)
+def _mesh(name: str, triangles: str, meshes: _Meshes, bound: str | None, color: str | None = None) -> list[str]:
+    """Return a mesh: drawn in a colour, or for collision by its convex hull; with its material's path."""
+    own = () if color is not None else ("PhysicsCollisionAPI", "PhysicsMeshCollisionAPI", "NewtonMeshCollisionAPI")
     lines = [
         f'def Mesh "{name}" (',
-        f"    prepend apiSchemas = [{listed}]",
+        f"    prepend apiSchemas = [{_schemas(*own, bound=bound)}]",
+        *meshes.head(triangles),
         ")",
         "{",
-        *triangles,
-        '    uniform token subdivisionScheme = "none"',
+        *meshes.fields(triangles),
+        *_bound(bound, "physics" if color is None else ""),
     ]
-    lines += _bound(bound, "" if drawn_ else "physics")
     if color is None:
         lines.append('    uniform token physics:approximation = "convexHull"')
     else:

@@ -9,14 +9,16 @@ hence so is the piece.
 beyond that plane are done, and so on until none is left. The plane is the triangle's own one, so that flat faces are exact and bores get
 tangent planes, or else the plane through its nearest point. In front of convex round surfaces the plane moves inwards a little, so that
 one plane serves many facets.
-3. Choice: the next seed belongs to the surface point that is farthest from all pieces, until each is within the bound.
+3. Choice: the next seeds belong to the surface point that is farthest from all pieces, until each is within the bound. All pieces that
+were ever grown are candidates, and the one that covers most points is taken. If there are too many, a greedy set cover chooses among all
+candidates, for the least bound that the permitted number of pieces reaches.
 
 Balls and cylinders are recognised by their faces and used whole if they lie inside; pieces with six perpendicular planes are boxes.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Final
 
@@ -38,7 +40,7 @@ __all__ = ["INSIDE_MM", "MOST_PIECES", "Inscribed", "Piece", "inscribed", "missi
 MOST_PIECES: Final = 32
 BOUND_MM, BOUND_SHARE = 0.5, 0.01  # how far the solid may extend beyond its pieces: the larger of the two; the share is of its diagonal
 INSIDE_MM: Final = 1e-4  # by which rounding may move a piece outside the mesh
-SCHEME: Final = "articad.inscribed/1"  # must change with anything that changes pieces
+SCHEME: Final = "articad.inscribed/2"  # must change with anything that changes pieces
 
 _SLACK_MM, _SLACK_SHARE = 0.25, 0.004  # how far a plane may move inwards: the larger of the two; the share is of the diagonal
 _SLACKS = (0.0, 0.04, 0.25, 0.5, 1.0)  # of that: the values that are tried
@@ -50,7 +52,11 @@ _SIMPLIFY = 0.1  # of the bound: deviation of the surface by simplification
 _ROUND = 6  # digits of mm in a piece's corners
 _OWN = 0.3  # a triangle's own plane is used if its distance from the seed is at least this share of the triangle's
 _MUCH = 0.2  # of the uncovered points: a recognised body that covers this share is used at once
-_TRIES = 3  # seeds that are tried for each piece
+_TRIES = 3  # points whose seeds are tried for each piece
+_DEPTHS = (0.5, 0.15, 0.85)  # of the material below a point: where seeds are tried, until a piece covers it
+_TIGHTER = (1.0, 0.4, 0.1)  # of the slack, in the same tries
+_SURPLUS = 2  # multiple of the permitted number of pieces that are collected before a choice among them
+_RELAXED = 1.1  # ratio of successive bounds that are tried, if there are too few pieces
 _SEGMENTS = 48  # in the meshes of recognised cylinders
 
 
@@ -112,23 +118,57 @@ def inscribed(mesh: TriMesh, *, bound: float | None = None, most: int = MOST_PIE
         return None
     bound = missing_bound(mesh) if bound is None else bound
     cover = _Cover(mesh, body, bound, deflection)
-    while len(cover.found) < most and len(cover.open):
-        if not cover.add():
-            break
-    return cover.result()
+    while len(cover.found) < _SURPLUS * most and cover.add():
+        pass
+    return cover.result(most)
 
 
 @dataclass(frozen=True, eq=False)
 class _Grown:
-    """Planes `(K, 4)`, n·x ≤ d; points inside all of them, up to `bound`, count as covered."""
+    """A piece as an intersection of half-spaces.
+
+    Attributes:
+        planes: Those that bound it, `(K, 4)`, n·x ≤ d.
+        piece: The piece.
+        volume: Its volume [mm³].
+        grown: All planes around the seed: each triangle is beyond one of them. Empty for recognised bodies.
+        seed: A point inside [mm].
+    """
 
     planes: FloatArray
     piece: Piece
     volume: float
+    grown: FloatArray
+    seed: FloatArray
 
     def distance(self, points: FloatArray) -> FloatArray:
-        """Return a lower bound of the distance of points from the piece, `(M,)` [mm]."""
-        return np.asarray((points @ self.planes[:, :3].T - self.planes[:, 3]).max(axis=1))
+        """Return a lower bound of the distance of points from the piece, `(M,)` [mm]: from the wedges of two planes.
+
+        A point at heights h and k above two planes with c = n·m, and above both edges of the nearest point's normal cone, is at the
+        distance √((h² + k² − 2chk) / (1 − c²)) from their wedge (Karush-Kuhn-Tucker with both multipliers positive).
+        """
+        heights = points @ self.planes[:, :3].T - self.planes[:, 3]
+        first = heights.argmax(axis=1)
+        h = heights[np.arange(len(points)), first]
+        outside = np.flatnonzero(h > 0)
+        far = h.copy()
+        if len(outside):
+            one, other = h[outside, None], heights[outside]
+            c = (self.planes[:, :3] @ self.planes[:, :3].T)[first[outside]]
+            apart = 1 - c * c
+            wedge = (other > c * one) & (apart > 1e-9)
+            squares = (one * one + other * other - 2 * c * one * other) / np.where(wedge, apart, 1.0)
+            far[outside] = np.sqrt(np.where(wedge, squares, one * one).max(axis=1))
+        return np.asarray(far)
+
+
+@dataclass(eq=False)
+class _Candidate:
+    """A piece that may be used: its distances from the sampled points `(M,)` [mm], and whether the finest surface is outside it."""
+
+    grown: _Grown
+    far: FloatArray
+    checked: bool
 
 
 class _Cover:
@@ -142,44 +182,67 @@ class _Cover:
         coarse = body.simplify(_SIMPLIFY * bound) if len(mesh.triangles) > _COARSE_TRIANGLES else body
         found = coarse.to_mesh64()
         self.coarse = _Facets.of(TriMesh(np.array(found.vert_properties[:, :3]), np.array(found.tri_verts, dtype=np.int32)))
+        self.same = self.coarse.count == self.full.count
         self.points, self.seeds, self.depths = _samples(self.coarse, coarse, self.size)
         self.limits = np.minimum(bound, np.maximum(BOUND_MM, _OF_DEPTH * self.depths))
         self.slack = min(bound / 2, max(_SLACK_MM, _SLACK_SHARE * self.size))
         self.far = np.full(len(self.points), np.inf)
-        self.tried = np.zeros(len(self.points), dtype=bool)
-        self.found: list[_Grown] = []
-        self.candidates = _round_bodies(mesh, self.full, deflection)
-
-    @property
-    def open(self) -> NDArray[np.intp]:
-        """Indices of points that are too far from all pieces and not yet given up."""
-        return np.flatnonzero((self.far > self.limits) & ~self.tried)
+        self.visits = np.zeros(len(self.points), dtype=int)
+        self.found: list[_Candidate] = []
+        self.pool = [_Candidate(one, one.distance(self.points), checked=True) for one in _round_bodies(mesh, self.full, deflection)]
+        self.ready = list(self.pool)
 
     def add(self) -> bool:
-        """Add the piece that covers most of the rest, around one of the farthest points; return False if there is none to try."""
-        while len(open_ := self.open):
-            ready = max(self.candidates, key=self._gain, default=None)
-            if ready is not None and self._gain(ready) >= _MUCH * len(open_):
+        """Take the candidate that covers most of the rest, after growing some around one of the farthest points; False if none does."""
+        while len(open_ := np.flatnonzero((self.far > self.limits) & (self.visits < len(_DEPTHS)))):
+            uncovered = self.far > self.limits
+            ready = self._best(self.ready, uncovered)
+            if ready is not None and self._gain(ready, uncovered) >= _MUCH * len(open_):
                 self._take(ready)
                 return True
-            target = open_[self._first(open_)]
-            near = open_[np.argsort(np.linalg.norm(self.points[open_] - self.points[target], axis=1))]
-            chosen = [target, *near[[len(near) // 8, len(near) // 2]].tolist()][:_TRIES]
-            grown = [one for index in dict.fromkeys(chosen) for one in self._around(self.seeds[index])]
-            gains = [(self._gain(one), one.volume, place) for place, one in enumerate([*grown, *self.candidates])]
-            best = max(gains, default=(0, 0.0, 0))
-            if best[0] == 0:
-                self.tried[target] = True
-                continue
-            piece = [*grown, *self.candidates][best[2]]
-            self._take(piece)
-            return True
+            target = int(open_[self._first(open_)])
+            if not any(one.far[target] <= self.limits[target] for one in self.pool):
+                self._grow(target, open_)
+            best = self._best(self.pool, uncovered)
+            if best is not None and self._gain(best, uncovered) and self._take(best):
+                return True
         return False
 
-    def _take(self, piece: _Grown) -> None:
-        self.far = np.minimum(self.far, piece.distance(self.points))
-        self.found.append(piece)
-        self.candidates = [one for one in self.candidates if one is not piece]
+    def _grow(self, target: int, open_: NDArray[np.intp]) -> None:
+        """Add pieces around seeds below a point and two others near it to the candidates."""
+        share, slack = 2 * _DEPTHS[self.visits[target]], self.slack * _TIGHTER[self.visits[target]]
+        self.visits[target] += 1
+        near = open_[np.argsort(np.linalg.norm(self.points[open_] - self.points[target], axis=1))]
+        chosen = [target, *near[[len(near) // 8, len(near) // 2]].tolist()][:_TRIES]
+        for index in dict.fromkeys(chosen):
+            for one in self._around(self.points[index] + share * (self.seeds[index] - self.points[index]), slack):
+                self.pool.append(_Candidate(one, one.distance(self.points), checked=self.same))
+
+    def _best(self, candidates: list[_Candidate], uncovered: NDArray[np.bool_]) -> _Candidate | None:
+        return max(candidates, key=lambda one: (self._gain(one, uncovered), one.grown.volume), default=None)
+
+    def _gain(self, one: _Candidate, uncovered: NDArray[np.bool_]) -> int:
+        return int(np.count_nonzero(uncovered & (one.far <= self.limits)))
+
+    def _take(self, one: _Candidate) -> bool:
+        """Add a candidate to the pieces; return False if nothing of it is left inside the finest surface."""
+        if not self._check(one):
+            return False
+        self.far = np.minimum(self.far, one.far)
+        self.found.append(one)
+        self.ready = [other for other in self.ready if other is not one]
+        return True
+
+    def _check(self, one: _Candidate) -> bool:
+        """Move a candidate's planes until the finest surface is outside; without anything left, remove it and return False."""
+        if one.checked:
+            return True
+        grown = _polytope(_held_off(one.grown.grown, self.full), one.grown.seed)
+        if grown is None:
+            self.pool = [other for other in self.pool if other is not one]
+            return False
+        one.grown, one.far, one.checked = grown, grown.distance(self.points), True
+        return True
 
     def _first(self, open_: NDArray[np.intp]) -> int:
         """Return the index of the farthest point; without a piece, of the one with most material below it."""
@@ -187,39 +250,67 @@ class _Cover:
             return int(self.depths[open_].argmax())
         return int((self.far[open_] / self.limits[open_]).argmax())
 
-    def _gain(self, one: _Grown) -> int:
-        return int(((self.far > self.limits) & (one.distance(self.points) <= self.limits)).sum())
-
-    def _around(self, seed: FloatArray) -> list[_Grown]:
+    def _around(self, seed: FloatArray, slack: float) -> list[_Grown]:
         """Return the piece around a seed, and the one around its centre."""
         found = []
         for _ in range(2):
-            one = self._piece(seed)
+            planes = _grown(self.coarse, seed, slack, self.size)
+            one = None if planes is None else _polytope(planes, seed)
             if one is None:
                 break
             found.append(one)
             seed = one.piece.mesh.transformed(one.piece.frame).vertices.mean(axis=0)
         return found
 
-    def _piece(self, seed: FloatArray) -> _Grown | None:
-        planes = _grown(self.coarse, seed, self.slack, self.size)
-        if planes is None:
-            return None
-        if self.coarse.count != self.full.count:
-            planes = _held_off(planes, self.full)
-        return _polytope(planes, seed)
+    def _chosen(self, most: int) -> list[_Grown]:
+        """Return at most so many candidates that reach the least bound, by a greedy set cover for each of increasing bounds.
 
-    def result(self) -> Inscribed | None:
+        What is left of the number is used for what most points need that are beyond the requested bound.
+        """
+        if len(self.found) <= most:
+            return [one.grown for one in self.found]
+        limits, bound = self.limits, self.bound
+        while (chosen := self._set_cover(limits, most)) is None:
+            limits = np.full(len(self.points), bound)
+            bound *= _RELAXED
+        while len(chosen) < most:
+            uncovered = np.minimum.reduce([one.far for one in chosen]) > self.limits
+            best = self._best(self.pool, uncovered)
+            if best is None or not self._gain(best, uncovered):
+                break
+            if self._check(best) and self._gain(best, uncovered):
+                chosen.append(best)
+        return [one.grown for one in chosen]
+
+    def _set_cover(self, limits: FloatArray, most: int) -> list[_Candidate] | None:
+        """Return candidates that cover all points that any candidate covers; None if more than `most` are needed."""
+        while True:
+            table = np.array([one.far <= limits for one in self.pool])
+            left, chosen = table.any(axis=0), []
+            while left.any() and len(chosen) < most:
+                best = int(np.count_nonzero(table & left, axis=1).argmax())
+                chosen.append(self.pool[best])
+                left = left & ~table[best]
+            if left.any():
+                return None
+            if all(one.checked for one in chosen):
+                return chosen
+            for one in chosen:  # which may cover less after that
+                self._check(one)
+
+    def result(self, most: int) -> Inscribed | None:
         """Return the pieces without redundant ones."""
         if not self.found:
             return None
-        table = np.array([one.distance(self.points) <= self.limits for one in self.found])
-        keep = np.ones(len(self.found), dtype=bool)
-        for index in np.argsort([one.volume for one in self.found]):
+        found = self._chosen(most)
+        far = np.array([one.distance(self.points) for one in found])
+        limits = np.maximum(self.limits, far.min(axis=0))  # what all pieces together reach
+        keep = np.ones(len(found), dtype=bool)
+        for index in np.argsort([one.volume for one in found]):
             keep[index] = False
-            if (table[keep].any(axis=0) != table.any(axis=0)).any():
+            if not keep.any() or (far[keep].min(axis=0) > limits).any():
                 keep[index] = True
-        kept = [_fewer_corners(one) for one, is_kept in zip(self.found, keep, strict=True) if is_kept]
+        kept = [_fewer_corners(one) for one, is_kept in zip(found, keep, strict=True) if is_kept]
         placed = [one.piece.mesh.transformed(one.piece.frame) for one in kept]
         together = manifold3d.Manifold.batch_boolean([_manifold(mesh) for mesh in placed], manifold3d.OpType.Add)
         less = max(0.0, 1.0 - together.volume() / self.volume)
@@ -239,12 +330,14 @@ class _Facets:
         normals: Outward unit normals, `(N, 3)`.
         offsets: n·x of each triangle's plane, `(N,)` [mm].
         areas: `(N,)` [mm²].
+        inward: Directions in each triangle's plane that point from its edges ab, bc, ca inwards, `(3, N, 3)`.
     """
 
     corners: FloatArray
     normals: FloatArray
     offsets: FloatArray
     areas: FloatArray
+    inward: FloatArray
 
     @property
     def count(self) -> int:
@@ -256,7 +349,8 @@ class _Facets:
         length = np.linalg.norm(twice, axis=1)
         normals = twice / np.where(length > 0, length, 1.0)[:, None]
         corners = mesh.vertices[mesh.triangles]
-        return cls(corners, normals, (normals * corners[:, 0]).sum(axis=1), length / 2)
+        inward = np.array([np.cross(normals, corners[:, (edge + 1) % 3] - corners[:, edge]) for edge in range(3)])
+        return cls(corners, normals, (normals * corners[:, 0]).sum(axis=1), length / 2, inward)
 
 
 def _samples(facets: _Facets, body: manifold3d.Manifold, size: float) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -297,10 +391,9 @@ def _nearest(facets: _Facets, seed: FloatArray) -> FloatArray:
         other = _on_segment(start, way, seed)
         nearer = ((other - seed) ** 2).sum(axis=1) < ((best - seed) ** 2).sum(axis=1)
         best = np.where(nearer[:, None], other, best)
-    n = facets.normals
     within = np.ones(facets.count, dtype=bool)
-    for start, way in ((a, ab), (b, bc), (c, -ac)):
-        within &= (np.cross(way, inside - start) * n).sum(axis=1) >= 0
+    for start, inward in zip((a, b, a), facets.inward, strict=True):  # the edges ab, bc, ca
+        within &= ((inside - start) * inward).sum(axis=1) >= 0
     return np.asarray(np.where(within[:, None], inside, best))
 
 
@@ -378,7 +471,7 @@ def _polytope(planes: FloatArray, seed: FloatArray) -> _Grown | None:
         return None
     bounding = np.unique(np.round(np.column_stack([hull.equations[:, :3], -hull.equations[:, 3]]), 9), axis=0)
     boxed = _as_box(mesh)
-    return _Grown(bounding, Piece(mesh, SE3.identity(), None) if boxed is None else boxed, mesh.volume)
+    return _Grown(bounding, Piece(mesh, SE3.identity(), None) if boxed is None else boxed, mesh.volume, planes, seed)
 
 
 def _fewer_corners(one: _Grown) -> _Grown:
@@ -397,7 +490,7 @@ def _fewer_corners(one: _Grown) -> _Grown:
             break
         chosen.append(int(heights.argmax()))
     mesh = _tidy(manifold3d.Manifold.hull_points(corners[sorted(chosen)]))
-    return one if mesh is None else _Grown(planes, Piece(mesh, SE3.identity(), None), mesh.volume)
+    return one if mesh is None else replace(one, planes=planes, piece=Piece(mesh, SE3.identity(), None), volume=mesh.volume)
 
 
 def _tidy(solid: manifold3d.Manifold) -> TriMesh | None:
@@ -500,7 +593,7 @@ def _ball(facets: _Facets, corners: FloatArray, normals: FloatArray, slack: floa
     directions = sphere(1.0, 24).vertices
     planes = np.column_stack([directions, directions @ center + r])
     piece = Piece(sphere(r, 32), SE3.from_translation(center), Primitive("sphere", (r,)))
-    return _Grown(planes, piece, 4 / 3 * np.pi * r**3)
+    return _Grown(planes, piece, 4 / 3 * np.pi * r**3, np.zeros((0, 4)), center)
 
 
 def _cylinder(facets: _Facets, corners: FloatArray, normals: FloatArray, axis: FloatArray, slack: float) -> _Grown | None:
@@ -535,7 +628,7 @@ def _cylinder(facets: _Facets, corners: FloatArray, normals: FloatArray, axis: F
     reach = np.concatenate([np.full(_SEGMENTS, r), [length / 2, length / 2]])
     planes = np.column_stack([n, n @ center + reach])
     piece = Piece(cylinder(r, length, _SEGMENTS), SE3.from_axes(center, axis, _whole(x)), Primitive("cylinder", (r, length)))
-    return _Grown(planes, piece, np.pi * r * r * length)
+    return _Grown(planes, piece, np.pi * r * r * length, np.zeros((0, 4)), center)
 
 
 def _to_origin(triangles: FloatArray) -> FloatArray:

@@ -1,16 +1,20 @@
-"""Outside judges of the examples' exports, and the table of what they say.
+"""Outside judges of exports, and the table of what they say of the examples and of the references of the benchmark's hard tasks.
 
 python -m venv DIR; DIR/bin/pip install -r tests/export/judges.lock
-ARTICAD_ENGINES=DIR/bin/python .venv/bin/python -m tests.export.judges [EXAMPLE …]
+python -m venv OTHER; OTHER/bin/pip install -r tests/export/simready.lock
+ARTICAD_ENGINES=DIR/bin/python ARTICAD_SIMREADY=OTHER/bin/python .venv/bin/python -m tests.export.judges [NAME …] [--without JUDGE] [--again]
 
-runs MuJoCo, PyBullet, Newton, Pinocchio, simcheck, check_urdf and the validator of USD on the exports of each example, keeps what they say in
-docs/reference/simulators.json, and writes docs/reference/simulators.md.
+runs MuJoCo, PyBullet, Newton, Pinocchio, simcheck, check_urdf and the validators of USD and SimReady on the exports of each model, keeps what they say in
+docs/reference/simulators.json, and writes docs/reference/simulators.md. A judge that has judged the same files is not asked again, unless
+`--again` is given.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -31,16 +35,32 @@ from articad.simulation.expected import held_to_kinematics
 from articad.simulation.loading import load
 from articad.simulation.trial import try_out
 from articad.simulation.verdict import EngineOutcome, SimulationVerdict
+from articad_bench.reference import reference_folder
+from articad_bench.task import tasks_in
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 RECORD: Final = ROOT / "docs" / "reference" / "simulators.json"
 PAGE: Final = RECORD.with_suffix(".md")
 PYTHON: Final = os.environ.get("ARTICAD_ENGINES", "")
+SIMREADY: Final = os.environ.get("ARTICAD_SIMREADY", "")  # its rules would join those of the USD validator in one environment
 SECONDS: Final = 900.0
+PROFILE: Final = ("Robotics-Prop", "4.0.0")  # of SimReady Foundation
 ARGUED: Final = {
     "UsdAsciiPerformanceChecker": "USD is written as text, which can be read, compared and kept in Git; `usdcat -o x.usdc x.usda` packs it",
+    "SR.002": "a thumbnail is a picture for a catalogue of assets, not a property of the model",
+    "SR.004": "an author, a licence and a Wikidata code cannot be derived from a model. Who publishes it adds them in `NAME.json` beside the file",
 }
 """Requirements that exports do not meet on purpose, and why."""
+OPTIONAL: Final = {
+    "NP.006, SR.001": "the provenance of SR.004 in earlier forms",
+    "RV.001, RV.004, RV.007": "a variant for each of PhysX, Newton and MuJoCo: the file has one set of prims, which is valid for each of them",
+    "MUJOCO.COL.001": "MuJoCo's own schema: MuJoCo loads the MJCF",
+    "VM.MDL.003, VM.PBR.001": "MDL and OpenPBR materials: the file has UsdPreviewSurface, which is required",
+    "NVM.001, NVM.002, NVM.003": "materials for lidar and radar, which a model does not state",
+    "GSP.001": "where a gripper takes hold, which a model does not state",
+    "ISA.001": "layers by purpose for Isaac Sim: the file is one layer",
+}
+"""Requirements of optional features of the profile that exports do not have, and what they are."""
 
 
 class Said(NamedTuple):
@@ -59,13 +79,24 @@ SITES: Final = Said(None, "not judged: Newton's reader drops the second site of 
 
 
 def folder_of(name: str) -> Path:
-    """Return the plan folder or the recorded run of an example."""
-    return examples.folder(name) if name in examples.names() else ROOT / "examples" / name / "recording"
+    """Return the plan folder or the recorded run of an example, or the plan folder of a hard task's reference."""
+    if name in examples.names():
+        return examples.folder(name)
+    if (ROOT / "examples" / name).is_dir():
+        return ROOT / "examples" / name / "recording"
+    ((folder, task),) = tasks_in(names=[name])
+    return reference_folder(folder, task)
 
 
 def example_names() -> list[str]:
     """Return the names of all examples, those that are recorded runs only as well."""
     return sorted(path.name for path in (ROOT / "examples").iterdir() if (path / "plan.json").exists() or (path / "recording").exists())
+
+
+def hard_names() -> list[str]:
+    """Return the names of the hard tasks whose references are no examples."""
+    examples_ = {folder_of(name) for name in example_names()}
+    return sorted(task.name for folder, task in tasks_in(kind="hard") if reference_folder(folder, task) not in examples_)
 
 
 def exported(assembly: Assembly, folder: Path) -> dict[str, Path]:
@@ -80,7 +111,7 @@ def exported(assembly: Assembly, folder: Path) -> dict[str, Path]:
 
 
 def judged(assembly: Assembly, files: Mapping[str, Path], without: Container[str] = ()) -> dict[str, Said]:
-    """Ask every judge about the exports of an assembly, but those whose names are given."""
+    """Ask every judge about the exports of an assembly, but those whose names are given, with or without the format."""
     opened = bool(assembly.mechanism.loop_joints)
     judges: dict[str, Callable[[], Said]] = {
         "MuJoCo mjcf": lambda: _verdict(held_to_kinematics(assembly, try_out("mujoco", files["mjcf"], drivers=driving(assembly)))),
@@ -95,8 +126,9 @@ def judged(assembly: Assembly, files: Mapping[str, Path], without: Container[str
         "simcheck mjcf": lambda: simcheck(files["mjcf"]),
         "simcheck urdf": lambda: simcheck(files["urdf"], opened=opened),
         "USD validator usd": lambda: usd_validator(files["usd"]),
+        "SimReady usd": lambda: simready(files["usd"]),
     }
-    return {name: judge() for name, judge in judges.items() if name.split()[0] not in without}
+    return {name: judge() for name, judge in judges.items() if name not in without and name.split()[0] not in without}
 
 
 def _verdict(outcome: EngineOutcome) -> Said:
@@ -185,6 +217,8 @@ def usd_validator(path: Path) -> Said:
     module = "omni.asset_validator"
     program = str(Path(PYTHON).with_name("omni_asset_validate"))
     done = _run([program, str(path)])
+    if f"{module}._cli:Errors:" not in done.stdout + done.stderr:  # its summary
+        return Said(passed=False, words=f"did not finish: {done.stderr[-200:]}")
     rows = [line for line in (done.stdout + done.stderr).splitlines() if line.startswith(("ERROR", "WARNING")) and module in line]
     names = [line.partition("[")[2].partition("]")[0] for line in rows]
     failed = [line for line, name in zip(rows, names, strict=True) if name not in ARGUED]
@@ -192,6 +226,40 @@ def usd_validator(path: Path) -> Said:
     if failed:
         return Said(passed=False, words=f"{len(failed)} failures: {failed[0][:200]}")
     return Said(passed=True, words="0 failures" + (f" but {', '.join(argued)}" if argued else ""))
+
+
+def simready(path: Path) -> Said:
+    """Ask the requirements of SimReady Foundation for a prop in robotics."""
+    if not SIMREADY:
+        return Said(None, "not installed")
+    program, (profile, version) = str(Path(SIMREADY).with_name("simready-validate")), PROFILE
+    with tempfile.TemporaryDirectory() as folder:
+        answer = Path(folder) / "answer.json"
+        _run([program, "--profile", profile, "--version", version, "--output", str(answer), str(path)])
+        (report,) = json.loads(answer.read_text()).values()
+    features = report["features_summary"].values()
+    required = {code for feature in features for code in _codes(feature.get("failing requirements"))}
+    optional = {code for feature in features for code in _codes(feature.get("optional requirements"))}
+    argued = required & ARGUED.keys()
+    failed = sorted((required - argued) | (optional - required - {code for codes in OPTIONAL for code in codes.split(", ")}))
+    if failed:
+        return Said(passed=False, words=f"{len(failed)} failures: {', '.join(failed)}")
+    passed = sum(feature["passed"] for feature in features)
+    return Said(passed=True, words=f"0 failures but {', '.join(sorted(argued))}; {passed} features of {len(features)}")
+
+
+def _codes(requirements: object) -> list[str]:
+    """Return the codes of requirements, as in "SR.002" of "['com.nvidia.simready.SR.002']"."""
+    return re.findall(r"com\.nvidia\.[a-z_]+\.([A-Z][\w.]*)", str(requirements))
+
+
+def _digest(path: Path) -> str:
+    """Return a digest of a main file and everything beside it."""
+    found = hashlib.sha256()
+    for file in sorted(path.parent.rglob("*")):
+        if file.is_file():
+            found.update(f"{file.relative_to(path.parent)} {file.stat().st_size}\n".encode() + file.read_bytes())
+    return found.hexdigest()[:16]
 
 
 def _run(command: list[str]) -> subprocess.CompletedProcess[str]:
@@ -202,12 +270,12 @@ def _run(command: list[str]) -> subprocess.CompletedProcess[str]:
 # ---------------------------------------------------------------------- the table
 
 SIMULATORS: Final = ("MuJoCo", "PyBullet", "Newton")
-OTHERS: Final = ("simcheck mjcf", "simcheck urdf", "check_urdf urdf", "Pinocchio urdf", "USD validator usd")
+OTHERS: Final = ("simcheck mjcf", "simcheck urdf", "check_urdf urdf", "Pinocchio urdf", "USD validator usd", "SimReady usd")
 
-_HEAD = """# What simulators and validators say about the examples
+_HEAD = """# What simulators and validators say about exports
 
-Written by `python -m tests.export.judges`, which exports the examples with default settings and runs the judges on the files. Versions are
-those of `tests/export/judges.lock` and `requirements.lock`.
+Written by `python -m tests.export.judges`, which exports the examples and the references of the benchmark's hard tasks with default settings
+and runs the judges on the files. The references of four hard tasks are examples. Versions are those of `tests/export/judges.lock`, `tests/export/simready.lock` and `requirements.lock`.
 
 "100 % of 4" means: 4 joints were driven, and the one that covered the smallest share of its range covered 100 %. The range of a follower in a loop is
 the one that kinematics computes for it. `articad sim` requires 99 %.
@@ -219,27 +287,42 @@ the one that kinematics computes for it. `articad sim` requires 99 %.
   child from the poses at zero (newton-physics/newton, issue 2293 and pull request 4248). *Anchors of loops corrected* means: the judge
   restored the anchors that Newton had read; otherwise, the loop is a different mechanism. From MJCF, Newton's reader drops the position of
   the second site of a `connect`, so that file is not judged.
-- An empty cell, or an example that is not listed, was not judged.
+- An empty cell, or a model that is not listed, was not judged.
 - PyBullet does not collide parts of one body unless it is asked to, so its rows do not test collision shapes.
 """
 
 
 def page(record: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return the page for what judges said, by example and judge."""
-    lines = [_HEAD, "## Simulators", "", "| example | file | " + " | ".join(SIMULATORS) + " |", "|---" * (2 + len(SIMULATORS)) + "|"]
-    for name, said in sorted(record.items()):
-        for kind in ("mjcf", "urdf", "usd"):
-            cells = [_cell(said.get(f"{engine} {kind}")) for engine in SIMULATORS]
-            lines.append(f"| {name} | {kind} | " + " | ".join(cells) + " |")
-    lines += ["", "## Checkers and validators", "", "| example | " + " | ".join(OTHERS) + " |", "|---" * (1 + len(OTHERS)) + "|"]
-    lines += [f"| {name} | " + " | ".join(_cell(said.get(judge)) for judge in OTHERS) + " |" for name, said in sorted(record.items())]
-    lines += ["", "## Requirements that are not met, and why", ""]
+    """Return the page for what judges said, by model and judge."""
+    shown = [
+        ("The examples", {name: said for name, said in sorted(record.items()) if name not in hard_names()}),
+        ("References of the benchmark's hard tasks", {name: record[name] for name in hard_names() if name in record}),
+    ]
+    lines = [_HEAD]
+    for title, rows in shown:
+        lines += [f"## {title}", "", *_tables(rows), ""]
+    lines += ["## Requirements that are not met, and why", ""]
     lines += [f"- `{name}`: {reason}." for name, reason in ARGUED.items()]
+    lines.append(
+        f"- Of the optional features of SimReady's profile {' '.join(PROFILE)}, the file has those that a prop with joints needs. It lacks:"
+    )
+    lines += [f"    - `{codes}`: {what}." for codes, what in OPTIONAL.items()]
     lines.append(
         "- simcheck's `engine.rest_contacts` on URDFs of closed loops: simcheck uses zero as the rest pose. A loop need not close where all "
         "joints are zero, and URDF has no other pose. The MJCF of the same model rests at its key `home`."
     )
     return "\n".join(lines) + "\n"
+
+
+def _tables(rows: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    lines = ["### Simulators", "", "| model | file | " + " | ".join(SIMULATORS) + " |", "|---" * (2 + len(SIMULATORS)) + "|"]
+    for name, said in rows.items():
+        for kind in ("mjcf", "urdf", "usd"):
+            cells = [_cell(said.get(f"{engine} {kind}")) for engine in SIMULATORS]
+            if any(cells):
+                lines.append(f"| {name} | {kind} | " + " | ".join(cells) + " |")
+    lines += ["", "### Checkers and validators", "", "| model | " + " | ".join(OTHERS) + " |", "|---" * (1 + len(OTHERS)) + "|"]
+    return lines + [f"| {name} | " + " | ".join(_cell(said.get(judge)) for judge in OTHERS) + " |" for name, said in rows.items()]
 
 
 def _cell(said: Mapping[str, Any] | None) -> str:
@@ -250,15 +333,22 @@ def _cell(said: Mapping[str, Any] | None) -> str:
 
 
 def main(words: list[str]) -> int:
-    """Judge examples, keep the record and write the page; `--without NAME` leaves a judge out."""
+    """Judge models, keep the record and write the page; `--without NAME` leaves a judge out, `--again` repeats what was judged."""
     without = {words[at + 1] for at, word in enumerate(words) if word == "--without"}
-    names = [word for at, word in enumerate(words) if word != "--without" and (at == 0 or words[at - 1] != "--without")]
-    for name in names or example_names():
+    again = "--again" in words
+    names = [word for at, word in enumerate(words) if not word.startswith("--") and (at == 0 or words[at - 1] != "--without")]
+    for name in names or [*example_names(), *hard_names()]:
+        record: dict[str, Any] = json.loads(RECORD.read_text()) if RECORD.exists() else {}
+        before = record.get(name, {})
         with tempfile.TemporaryDirectory() as folder:
             assembly = read(folder_of(name))
-            said = judged(assembly, exported(assembly, Path(folder)), without)
-        record: dict[str, Any] = json.loads(RECORD.read_text()) if RECORD.exists() else {}
-        record[name] = record.get(name, {}) | {judge: one._asdict() for judge, one in said.items()}
+            files = exported(assembly, Path(folder))
+            digests = {kind: _digest(path) for kind, path in files.items()}
+            known = {judge for judge, said in before.items() if said.get("files") == digests[judge.split()[-1]]}
+            said = judged(assembly, files, without | (set() if again else known))
+        rows = {judge: one._asdict() | {"files": digests[judge.split()[-1]]} for judge, one in said.items()}
+        record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
+        record[name] = record.get(name, {}) | rows
         print(name, {judge: one.words for judge, one in said.items()}, flush=True)  # noqa: T201 - a command
         RECORD.write_text(json.dumps(record, indent=1, sort_keys=True) + "\n")
         PAGE.write_text(page(record))
