@@ -176,7 +176,7 @@ def print_review(report: Report, terminal: Terminal) -> None:
 
 
 def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
-    """Print each export's main file, its size, one line for each kind of loss (all rows with -v), and its writer's findings."""
+    """Print each export's main file, its size, one line for each kind of loss (all rows with -v), and the writers' findings, each once."""
     for name, export in exports.items():
         meshes = sum(size for path, size in export["files"].items() if path.endswith((".stl", ".obj")))
         weight = f", {sum(export['files'].values()) / 1e6:.2f} MB" + (f" with {meshes / 1e6:.2f} MB of meshes" if meshes else "")
@@ -191,7 +191,10 @@ def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
                 continue
             others = f" and {len(rows) - 1} more, -v lists them" if len(rows) > 1 else ""
             terminal.say(f"  lost: {lost} ({rows[0]['where']}{others})")
-        print_findings(export.get("findings", []), terminal)
+    findings: list[Report] = []
+    for export in exports.values():
+        findings += [finding for finding in export.get("findings", []) if finding not in findings]
+    print_findings(findings, terminal)
 
 
 def print_findings(findings: list[Report], terminal: Terminal) -> None:

@@ -498,15 +498,13 @@ def kept_losses(format_name: Format, kept: Iterable[Kept], written: Container[Ke
     return tuple(Loss(format_name, where, "nothing", "; ".join(dict.fromkeys(said)), refused=False) for (where, _), said in lost.items())
 
 
-def assumed_finding(joints: Iterable[str], format_name: Format) -> list[Finding]:
-    """Return the finding that lists joints whose effort, velocity or damping is computed because it is not stated."""
+def assumed_finding(joints: Iterable[str]) -> list[Finding]:
+    """Return the finding that lists joints whose effort, velocity or damping is computed because it is not stated; equal for all formats."""
     names = list(dict.fromkeys(joints))
     if not names:
         return []
     listed = ", ".join(names[:8]) + (f" and {len(names) - 8} others" if len(names) > 8 else "")
-    message = (
-        f"Effort, velocity or damping of {listed} are not stated; {format_name} has values computed from mass, gravity and the worst pose."
-    )
+    message = f"Effort, velocity or damping of {listed} are not stated; exports have values computed from mass, gravity and the worst pose."
     hint = "State them where the drives are known."
     return [Finding(code="I_EFFORT_ASSUMED", where="joints", message=message, hint=hint, stage="export")]
 

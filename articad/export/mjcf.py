@@ -113,7 +113,7 @@ def write_mjcf(
     if strict:
         refuse(losses)
     assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
-    return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses, Findings(assumed_finding(assumed, "mjcf")))
+    return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses, Findings(assumed_finding(assumed)))
 
 
 def _starts_at_world(assembly: Assembly) -> bool:

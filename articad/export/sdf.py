@@ -89,9 +89,7 @@ def write_sdf(
     if strict:
         refuse(losses)
     assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
-    return Bundle(
-        {f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses, Findings(assumed_finding(assumed, "sdf"))
-    )
+    return Bundle({f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses, Findings(assumed_finding(assumed)))
 
 
 class _Kept:

@@ -120,7 +120,7 @@ def write_urdf(
     else:
         main = {f"{kind}/{model.name}.{kind}": content for kind, content in documents.items()}
         main |= package_files(package, model.name, [*documents, files.folder])
-    return Bundle({**main, **files.files}, losses, Findings(assumed_finding(_assumed(model, keeper, all_of=True), "urdf")))
+    return Bundle({**main, **files.files}, losses, Findings(assumed_finding(_assumed(model, keeper, all_of=True))))
 
 
 def _features_of_file(assembly: Assembly, model: LoweredModel, keeper: _Keeper) -> list[Feature]:

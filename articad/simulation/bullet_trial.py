@@ -13,6 +13,7 @@ from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PA
 from articad.simulation.verdict import EngineOutcome, JointReach, covered
 
 STEPS_PER_S = 240
+SOLVER_ITERATIONS = 500  # PyBullet's 50 do not converge where a light link carries a heavy one: held joints drift
 HOLD_S = 1.0
 HOLD_FORCE = 1e5  # N or N·m: as large as needed
 
@@ -149,6 +150,7 @@ def run(
     client = bullet.connect(bullet.DIRECT)
     try:
         bullet.setGravity(0, 0, -9.81, physicsClientId=client)
+        bullet.setPhysicsEngineParameter(numSolverIterations=SOLVER_ITERATIONS, physicsClientId=client)
         if path.suffix.lower() == ".urdf":
             bodies = [bullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)]
         else:

@@ -86,7 +86,8 @@ def _told(path: Path) -> _Told:
     model, mechanism = lower(assembly), assembly.mechanism
     rest = {freedom.name: freedom.rest for joint in model.joints for freedom in joint.freedoms}
     couplings = {name for _, name, _ in model.couplings} | {follows.leader for _, _, follows in model.couplings}
-    couplings |= {freedom.name for joint in model.joints for freedom in joint.freedoms if freedom.follows is not None}
+    ties = [(freedom.name, freedom.follows) for joint in model.joints for freedom in joint.freedoms]
+    couplings |= {end for name, follows in ties if follows is not None for end in (name, follows.leader)}  # the file may state either
     inside = {joint.name for loop in mechanism.loop_joints for joint in mechanism.tree.joints_between(loop.parent, loop.child)}
     opened = {freedom.name for joint in model.joints if joint.joint.name in inside for freedom in joint.freedoms}
     if opened & ({*mimics} - couplings):  # <mimic> replaces the loops

@@ -1,7 +1,8 @@
 """A model in MuJoCo: held at rest, driven joint by joint over its ranges, then released.
 
 Joints are held and driven by computed torque: `τ = M (ω² e - 2 ω v) + bias`, with e limited so that an obstacle is pushed but not
-penetrated. A model's own actuators are switched off. Everything runs in a process of its own (`articad.simulation.trial`), because files
+penetrated. Where other joints follow by loops and couplings with the Jacobian J, the inertia that the driven joints S feel replaces M:
+`(S P Sᵀ)⁻¹` with `P = M⁻¹ - M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ J M⁻¹` (Gauss's principle: the accelerations that the constraints permit). A model's own actuators are switched off. Everything runs in a process of its own (`articad.simulation.trial`), because files
 are untrusted.
 """
 
@@ -18,13 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.arrays import FloatArray
-from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
+from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_FOLLOWER, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
 from articad.simulation.verdict import EngineOutcome, FilmFrame, JointReach, Role, covered
 
 STIFFNESS = 20.0  # ω of the controller [1/s]: a tenth of a second to arrive
 MOST_ERROR = 0.2  # rad or m: largest error on which the controller acts
 HOLD_S = 1.0
 FREE_S = 1.0
+IMPACT_S = 0.3  # until an impact in loops and couplings has decayed
+REFRESH = 8  # steps after which the inertia that driven joints feel is computed again
 PUSH = 0.2  # rad/s or m/s with which a model is released
 
 
@@ -52,6 +55,7 @@ class Trial:
     start: FloatArray = field(default_factory=lambda: np.zeros(0))
     rest: Mapping[str, float] = field(default_factory=dict)
     mimics: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
+    felt: tuple[int, FloatArray] | None = None
 
     @classmethod
     def of(cls, path: Path, rest: Mapping[str, float] | None = None, mimics: Mapping[str, tuple[str, float, float]] | None = None) -> Trial:
@@ -67,6 +71,7 @@ class Trial:
         """
         model = mujoco.MjModel.from_xml_path(str(path))
         model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
+        model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE  # which `_inertia` reads
         trial = cls(model, mujoco.MjData(model), EngineOutcome("mujoco", str(mujoco.__version__)), rest=rest or {}, mimics=mimics or {})
         trial.reset()
         trial.start = np.array(trial.data.qpos)
@@ -171,12 +176,16 @@ class Trial:
         """Drive one joint over its range with its followers, all others held."""
         lower, upper, unit = self._range(joint)
         self.reset()
+        self.felt = None
         at, target = self.model.jnt_qposadr[joint], np.array(self.start)
         free = set(np.flatnonzero(np.isin(self.model.dof_jntid, list(following))).tolist())
         held = np.array([dof for dof in self._hinged_dofs() if dof not in free], dtype=int)
         rest = float(self.start[at])
         low, high, blocker, lag = np.array(self.start), np.array(self.start), "", 0.0
-        steps = self._steps(max(STROKE_S, (upper - lower) / (PACE_RAD_S if unit == "rad" else PACE_M_S)))
+        mean_pace = PACE_RAD_S if unit == "rad" else PACE_M_S
+        if following:
+            mean_pace = min(mean_pace, PACE_FOLLOWER / self._gearing(joint))
+        steps = self._steps(max(STROKE_S, (upper - lower) / mean_pace))
         shown = {steps, 2 * steps, 3 * steps - 1}
         before, followers = rest, self._followers(joint)
         for step, value in enumerate(strokes(rest, lower, upper, steps)):
@@ -200,7 +209,11 @@ class Trial:
         return Stroke(low, high, blocker)
 
     def _let_go(self) -> None:
-        """Release the model with a push, without contact or limits; its energy may only decrease."""
+        """Release the model with a push, without contact or limits; its energy may only decrease.
+
+        A push that a loop cannot follow is an impact, and what it stores in the constraints, which are springs, is not in MuJoCo's sum of
+        energies. So the sum is compared after that has decayed, and with the kinetic energy of the push.
+        """
         model = self.model
         model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | int(mujoco.mjtDisableBit.mjDSBL_LIMIT)
         model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -209,12 +222,14 @@ class Trial:
             return
         rng = np.random.default_rng(0)
         self.data.qvel[:] = PUSH * rng.uniform(-1, 1, model.nv)
-        if model.neq:  # a push that a loop cannot follow is an impact: wait until it has decayed
-            for _ in range(self._steps(FREE_S / 10)):
+        mujoco.mj_forward(model, self.data)
+        kinetic = abs(float(self.data.energy[1]))
+        if model.neq:
+            for _ in range(self._steps(IMPACT_S)):
                 if not self._step(None, np.zeros(0, dtype=int)):
                     return
-        mujoco.mj_forward(model, self.data)
-        first, most, kinetic = float(self.data.energy.sum()), -math.inf, abs(float(self.data.energy[1]))
+            mujoco.mj_forward(model, self.data)
+        first, most = float(self.data.energy.sum()), -math.inf
         for _ in range(self._steps(FREE_S)):
             if not self._step(None, np.zeros(0, dtype=int)):
                 return
@@ -236,7 +251,10 @@ class Trial:
             late = (0.0 if pace is None else pace) - data.qvel
             wanted[held] = STIFFNESS**2 * error[held] + 2 * STIFFNESS * late[held]
             torque = np.zeros(model.nv)
-            mujoco.mj_mulM(model, data, torque, wanted)
+            if free:
+                torque[held] = self._inertia(held) @ wanted[held]
+            else:
+                mujoco.mj_mulM(model, data, torque, wanted)
             weight = data.qfrc_bias - data.qfrc_passive
             data.qfrc_applied[held] = torque[held] + weight[held]
             following = sorted(free or ())  # joints of the same loop follow, they are not controlled
@@ -250,6 +268,30 @@ class Trial:
             self.outcome.exploded = True
             return False
         return True
+
+    def _inertia(self, held: NDArray[np.int_]) -> FloatArray:
+        """Return the inertia that controlled joints feel through loops and couplings, `(H, H)`; computed every few steps."""
+        count, known = self.felt or (0, np.zeros((0, 0)))
+        if count % REFRESH == 0 or len(known) != len(held):
+            known = np.linalg.pinv(self._permitted()[np.ix_(held, held)], rcond=1e-9, hermitian=True)
+        self.felt = count + 1, known
+        return known
+
+    def _permitted(self) -> FloatArray:
+        """Return P, which maps generalised forces to the accelerations that loops and couplings permit, `(nv, nv)`."""
+        model, data = self.model, self.data
+        mass = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, mass)
+        inverse = np.linalg.inv(mass)
+        rows = data.efc_type[: data.nefc] == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+        J = np.asarray(data.efc_J).reshape(-1, model.nv)[: data.nefc][rows]
+        return np.asarray(inverse - inverse @ J.T @ np.linalg.pinv(J @ inverse @ J.T, rcond=1e-9, hermitian=True) @ J @ inverse)
+
+    def _gearing(self, joint: int) -> float:
+        """Return how many times as fast as a driven joint the fastest of its followers moves from rest."""
+        dof, hinged = int(self.model.jnt_dofadr[joint]), self._hinged_dofs()
+        speeds = np.abs(self._permitted()[:, dof])
+        return float(speeds[hinged].max() / speeds[dof]) if speeds[dof] > 0 else 1.0
 
     def _error(self, target: FloatArray) -> FloatArray:
         """Return the difference to a pose, per degree of freedom."""

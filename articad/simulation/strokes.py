@@ -8,6 +8,7 @@ from collections.abc import Iterator
 STROKE_S = 1.0  # at least, for each stroke: rest to lower, lower to upper, upper to rest
 PACE_RAD_S = 3.0  # mean speed of a stroke
 PACE_M_S = 1.0
+PACE_FOLLOWER = 30.0  # rad/s or m/s: largest mean speed of a joint that follows a driven one
 MOST_SPEED = 100.0  # rad/s or m/s: joints that are held do not move so fast
 MOST_JOINTS = 80
 FREE_SLIDE_M = 0.1  # in both directions, for a slide without limits

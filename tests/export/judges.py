@@ -342,7 +342,7 @@ def main(words: list[str]) -> int:
         before = record.get(name, {})
         with tempfile.TemporaryDirectory() as folder:
             assembly = read(folder_of(name))
-            files = exported(assembly, Path(folder))
+            files = exported(assembly, Path(folder) / name)  # SimReady's NP.005: NAME/…/NAME.usda
             digests = {kind: _digest(path) for kind, path in files.items()}
             known = {judge for judge, said in before.items() if said.get("files") == digests[judge.split()[-1]]}
             said = judged(assembly, files, without | (set() if again else known))
