@@ -1,7 +1,7 @@
 """A model in MuJoCo: held at rest, driven joint by joint over its ranges, then released.
 
 Joints are held and driven by computed torque: `τ = M (ω² e - 2 ω v) + bias`, with e limited so that an obstacle is pushed but not
-penetrated. Where other joints follow by loops and couplings with the Jacobian J, the inertia that the driven joints S feel replaces M:
+penetrated. Where other joints follow by loops and couplings with the Jacobian J, the inertia that the driven joints S feel at rest replaces M:
 `(S P Sᵀ)⁻¹` with `P = M⁻¹ - M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ J M⁻¹` (Gauss's principle: the accelerations that the constraints permit). A model's own actuators are switched off. Everything runs in a process of its own (`articad.simulation.trial`), because files
 are untrusted.
 """
@@ -27,7 +27,7 @@ MOST_ERROR = 0.2  # rad or m: largest error on which the controller acts
 HOLD_S = 1.0
 FREE_S = 1.0
 IMPACT_S = 0.3  # until an impact in loops and couplings has decayed
-REFRESH = 8  # steps after which the inertia that driven joints feel is computed again
+LOCKED = 1e-6  # share of its mobility that loops leave to a joint that cannot move
 PUSH = 0.2  # rad/s or m/s with which a model is released
 
 
@@ -55,7 +55,7 @@ class Trial:
     start: FloatArray = field(default_factory=lambda: np.zeros(0))
     rest: Mapping[str, float] = field(default_factory=dict)
     mimics: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
-    felt: tuple[int, FloatArray] | None = None
+    felt: FloatArray | None = None
 
     @classmethod
     def of(cls, path: Path, rest: Mapping[str, float] | None = None, mimics: Mapping[str, tuple[str, float, float]] | None = None) -> Trial:
@@ -176,10 +176,10 @@ class Trial:
         """Drive one joint over its range with its followers, all others held."""
         lower, upper, unit = self._range(joint)
         self.reset()
-        self.felt = None
         at, target = self.model.jnt_qposadr[joint], np.array(self.start)
         free = set(np.flatnonzero(np.isin(self.model.dof_jntid, list(following))).tolist())
         held = np.array([dof for dof in self._hinged_dofs() if dof not in free], dtype=int)
+        self.felt = self._inertia(held) if free else None
         rest = float(self.start[at])
         low, high, blocker, lag = np.array(self.start), np.array(self.start), "", 0.0
         mean_pace = PACE_RAD_S if unit == "rad" else PACE_M_S
@@ -206,6 +206,7 @@ class Trial:
                 lag, blocker = abs(value - here), self._contact(joint)
             if step in shown:
                 self.outcome.frames.append(FilmFrame(self._name(joint), self._values()))
+        self.felt = None
         return Stroke(low, high, blocker)
 
     def _let_go(self) -> None:
@@ -251,8 +252,8 @@ class Trial:
             late = (0.0 if pace is None else pace) - data.qvel
             wanted[held] = STIFFNESS**2 * error[held] + 2 * STIFFNESS * late[held]
             torque = np.zeros(model.nv)
-            if free:
-                torque[held] = self._inertia(held) @ wanted[held]
+            if self.felt is not None:
+                torque[held] = self.felt @ wanted[held]
             else:
                 mujoco.mj_mulM(model, data, torque, wanted)
             weight = data.qfrc_bias - data.qfrc_passive
@@ -270,28 +271,33 @@ class Trial:
         return True
 
     def _inertia(self, held: NDArray[np.int_]) -> FloatArray:
-        """Return the inertia that controlled joints feel through loops and couplings, `(H, H)`; computed every few steps."""
-        count, known = self.felt or (0, np.zeros((0, 0)))
-        if count % REFRESH == 0 or len(known) != len(held):
-            known = np.linalg.pinv(self._permitted()[np.ix_(held, held)], rcond=1e-9, hermitian=True)
-        self.felt = count + 1, known
-        return known
+        """Return the inertia that controlled joints feel at rest through loops and couplings, `(H, H)`.
 
-    def _permitted(self) -> FloatArray:
-        """Return P, which maps generalised forces to the accelerations that loops and couplings permit, `(nv, nv)`."""
+        In coordinates in which M⁻¹ of these joints is 1, the eigenvalues of P are the shares of mobility that loops leave, from 0 to 1.
+        Directions that are locked have their own inertia.
+        """
+        permitted, free = self._permitted()
+        root = np.linalg.cholesky(free[np.ix_(held, held)])
+        shares, ways = np.linalg.eigh(np.linalg.solve(root, np.linalg.solve(root, permitted[np.ix_(held, held)]).T))
+        ways = np.linalg.solve(root.T, ways)
+        return np.asarray(ways @ np.diag(1 / np.where(shares > LOCKED, shares, 1.0)) @ ways.T)
+
+    def _permitted(self) -> tuple[FloatArray, FloatArray]:
+        """Return P, which maps generalised forces to the accelerations that loops and couplings permit, and M⁻¹, both `(nv, nv)`."""
         model, data = self.model, self.data
         mass = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, mass)
         inverse = np.linalg.inv(mass)
         rows = data.efc_type[: data.nefc] == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
         J = np.asarray(data.efc_J).reshape(-1, model.nv)[: data.nefc][rows]
-        return np.asarray(inverse - inverse @ J.T @ np.linalg.pinv(J @ inverse @ J.T, rcond=1e-9, hermitian=True) @ J @ inverse)
+        return inverse - inverse @ J.T @ np.linalg.pinv(J @ inverse @ J.T, rcond=1e-9, hermitian=True) @ J @ inverse, inverse
 
     def _gearing(self, joint: int) -> float:
         """Return how many times as fast as a driven joint the fastest of its followers moves from rest."""
         dof, hinged = int(self.model.jnt_dofadr[joint]), self._hinged_dofs()
-        speeds = np.abs(self._permitted()[:, dof])
-        return float(speeds[hinged].max() / speeds[dof]) if speeds[dof] > 0 else 1.0
+        permitted, free = self._permitted()
+        speeds = np.abs(permitted[:, dof])
+        return float(speeds[hinged].max() / speeds[dof]) if speeds[dof] > LOCKED * free[dof, dof] else 1.0
 
     def _error(self, target: FloatArray) -> FloatArray:
         """Return the difference to a pose, per degree of freedom."""
