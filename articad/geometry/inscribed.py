@@ -286,7 +286,8 @@ class _Cover:
         """Return candidates that cover all points that any candidate covers; None if more than `most` are needed."""
         while True:
             table = np.array([one.far <= limits for one in self.pool])
-            left, chosen = table.any(axis=0), []
+            left = table.any(axis=0)
+            chosen: list[_Candidate] = []
             while left.any() and len(chosen) < most:
                 best = int(np.count_nonzero(table & left, axis=1).argmax())
                 chosen.append(self.pool[best])
