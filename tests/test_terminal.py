@@ -9,9 +9,10 @@ from typing import Any
 
 import pytest
 
-from articad.commands.summaries import print_findings
+from articad.commands.summaries import print_exports, print_findings
 from articad.commands.terminal import Terminal
 from articad.errors import BuildError, PlanError
+from articad.export.losses import assumed_finding
 from articad.findings import Finding, Findings
 
 ERROR = Finding(code="E_DUP_NAME", where="parts[1]", message="'lid' is used twice.", hint="Rename one.")
@@ -134,6 +135,15 @@ def test_of_the_same_fault_of_the_same_parts_the_worst_is_printed() -> None:
     ]
     assert "2 more of these parts" in out(speaking)
     assert out(asked).count("deep") == len(many)
+
+
+def test_a_finding_that_two_formats_share_is_printed_once() -> None:
+    assumed = assumed_finding(["hinge"])[0].to_json()
+    export = {"main": "m", "files": {"m": 1}, "rows": [], "findings": [assumed]}
+    shown = terminal()
+
+    print_exports({"urdf": export, "mjcf": export}, shown)
+    assert (out(shown) + err(shown)).count("I_EFFORT_ASSUMED") == 1
 
 
 def test_off_a_terminal_progress_is_a_line_for_each_end_from_any_thread() -> None:

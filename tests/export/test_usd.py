@@ -215,6 +215,30 @@ def test_every_shape_has_an_extent_and_meshes_have_normals_that_point_out(stage:
     assert {prim.GetTypeName() for prim in shapes} >= {"Mesh", "Cube"}
 
 
+@pytest.mark.engines
+def test_parts_and_materials_have_labels_and_equal_meshes_are_written_once(tmp_path: Path) -> None:
+    """Two balls of one mesh: usd-core composes the points of both from one abstract prim, which no traversal meets."""
+    from pxr import Usd
+
+    base = block("base", a=frame(), b=frame(at=(100, 0, 0)))
+    balls = [replace(Part.from_mesh(name, sphere(10, 24), density=7850.0, connectors=base.connectors), material="steel") for name in "pq"]
+    joints = [declare.revolute(ball.name, base[at], ball["a"], limits=(-1, 2)) for at, ball in zip("ab", balls, strict=True)]
+    bundle = write_usd(
+        Assembly.from_parts("model", parts=[base, *balls], joints=joints, ground="base"), cache=BuildCache(tmp_path / "cache")
+    )
+    bundle.write(tmp_path)
+    stage = Usd.Stage.Open(str(tmp_path / bundle.main))
+    one, other = (stage.GetPrimAtPath(f"/model/{name}/visuals/visual_0") for name in "pq")
+
+    assert np.array_equal(one.GetAttribute("points").Get(), other.GetAttribute("points").Get())
+    assert len(one.GetAttribute("points").Get()) > 100
+    assert bundle.files[bundle.main].count(b"point3f[] points") < sum(prim.GetTypeName() == "Mesh" for prim in stage.Traverse())
+    assert not [prim for prim in stage.Traverse() if prim.GetPath().HasPrefix("/model/meshes")]
+    assert list(stage.GetPrimAtPath("/model/p").GetAttribute("semantics:labels:class").Get()) == ["p"]
+    bound = one.GetRelationship("material:binding").GetTargets()[0]
+    assert list(stage.GetPrimAtPath(bound).GetAttribute("semantics:labels:material").Get()) == ["steel"]
+
+
 def matrix_of(position: Any, rotation: Any) -> Any:
     x, y, z = rotation.GetImaginary()
     T = SE3.from_quaternion(np.array([x, y, z, rotation.GetReal()]) / math.hypot(x, y, z, rotation.GetReal()), [float(p) for p in position])

@@ -88,6 +88,22 @@ def test_a_loop_that_does_not_close_has_a_residual(tmp_path: Path) -> None:
     assert finding.value == pytest.approx(3.0, rel=0.05)
 
 
+def test_a_driver_reaches_its_range_however_much_its_followers_weigh(tmp_path: Path) -> None:
+    """A feather turns a flywheel at 1 : 60: the inertia that it feels is many thousand times its own."""
+    wheel = (
+        '<body name="wheel" pos="0.3 0 0.5"><joint name="wheel" axis="0 0 1"/><geom type="cylinder" size="0.02 0.002" mass="0.05"/></body>'
+    )
+    gear = '<equality><joint joint1="wheel" joint2="turn" polycoef="0 60 0 0 0"/></equality>'
+    path = tmp_path / "model.xml"
+    path.write_text(MODEL.format(world="", joint="", arm=ARM, more="", bodies=wheel, rest=gear))
+
+    (outcome,) = SimulationVerdict(str(path), (try_out("mujoco", path, drivers=("turn",)),)).outcomes
+    shares = {reach.joint: reach.share for reach in outcome.reaches}
+    assert not outcome.exploded
+    assert shares["turn"] >= 0.99
+    assert outcome.top_speed < 100
+
+
 def test_a_spring_that_pushes_away_gains_energy(tmp_path: Path) -> None:
     """Damping below zero does what no hinge does: it feeds the motion."""
     verdict = verdict_on(tmp_path, joint='damping="-0.0002"')
