@@ -89,9 +89,9 @@ def test_a_loop_that_does_not_close_has_a_residual(tmp_path: Path) -> None:
 
 
 def test_a_driver_reaches_its_range_however_much_its_followers_weigh(tmp_path: Path) -> None:
-    """A feather turns a flywheel at 1 : 60: the inertia that it feels is many thousand times its own."""
+    """A feather turns a flywheel at 1 : 60: the inertia that it feels is far more than its own."""
     wheel = (
-        '<body name="wheel" pos="0.3 0 0.5"><joint name="wheel" axis="0 0 1"/><geom type="cylinder" size="0.02 0.002" mass="0.05"/></body>'
+        '<body name="wheel" pos="0.3 0 0.5"><joint name="wheel" axis="0 0 1"/><geom type="cylinder" size="0.05 0.002" mass="0.2"/></body>'
     )
     gear = '<equality><joint joint1="wheel" joint2="turn" polycoef="0 60 0 0 0"/></equality>'
     path = tmp_path / "model.xml"
