@@ -43,6 +43,7 @@ from articad.kernels.contract import probe_findings, read_connectors, solid_find
 from articad.kernels.failures import script_failure
 from articad.kernels.freecad import tree_findings
 from articad.kernels.sandbox import ScriptLimits
+from articad.kernels.step_assembly import StepReader
 from articad.kernels.zygote import JobOutcome
 from articad.memory.experience import ExperienceStore
 from articad.plan.check import check_plan
@@ -134,6 +135,21 @@ def ply(content: bytes) -> None:
     _mesh(".ply", content)
 
 
+def dae(content: bytes) -> None:
+    """A COLLADA file."""
+    _mesh(".dae", content)
+
+
+def srdf(content: bytes) -> None:
+    """An SRDF, beside the URDF that it belongs to."""
+    folder = _folder(os.getpid()) / "moveit"
+    folder.mkdir(exist_ok=True)
+    (folder / "robot.srdf").write_bytes(content)
+    path = folder / "robot.urdf"
+    path.write_bytes((CORPUS / "urdf" / "robot.urdf").read_bytes())
+    _used(read_urdf(path))
+
+
 def reply(content: bytes) -> None:
     """A model's reply, as every role reads it."""
     text = content.decode("utf-8", errors="replace")
@@ -179,6 +195,14 @@ def worker(content: bytes) -> None:
 def step(content: bytes) -> None:
     """A STEP file; the confined worker reads it, and may crash or be late without harm."""
     _solid("step", content)
+
+
+def assembly(content: bytes) -> None:
+    """The products of a STEP file, with their names and poses."""
+    with _file(".step", content) as path:
+        reader = step_reader()
+        parts = reader.read_assembly(path, deflection=0.5)
+    assert len({part.name for part in parts}) == len(parts)
 
 
 def brep(content: bytes) -> None:
@@ -240,9 +264,12 @@ READERS: Mapping[str, Callable[[bytes], None]] = {
     "obj": obj,
     "glb": glb,
     "ply": ply,
+    "dae": dae,
+    "srdf": srdf,
     "reply": reply,
     "worker": worker,
     "step": step,
+    "assembly": assembly,
     "brep": brep,
     "shape": shape,
     "run": run,
@@ -275,6 +302,12 @@ class _NoWords:
 def kernel() -> Build123dKernel:
     """The kernel whose worker reads shapes, with little time and memory; without bubblewrap, which would hide its processor time."""
     return Build123dKernel(timeout=5.0, memory=2 * 2**30, sandbox="weak", layers=("landlock", "seccomp"))
+
+
+@cache
+def step_reader() -> StepReader:
+    """The same worker, reading assemblies."""
+    return StepReader(timeout=5.0, memory=2 * 2**30, sandbox="weak", layers=("landlock", "seccomp"))
 
 
 def _solid(form: str, content: bytes) -> None:
