@@ -10,102 +10,166 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
+from typing import Final, NamedTuple
 
 import pytest
 
+from articad.commands.command import COMMANDS
 from tests.agents import hostile_endpoint as ways
 from tests.agents.hostile_endpoint import hostile
-from tests.test_processes import _heeds_interrupts, gone
+from tests.leftovers import descendants, gone, started_with
+from tests.test_processes import _heeds_interrupts
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in Linux's /proc")]
 
 ARTICAD = [sys.executable, "-P", "-c", "import sys; from articad.cli import main; sys.exit(main())"]
 STARTER = Path(__file__).resolve().parents[1] / "articad" / "starter"
+RECORDED = Path(__file__).parent / "recordings" / "toy"
 ENDLESS = "def build(part):\n    while True:\n        pass\n"
-START_S = 120.0  # for a command to be in the middle of its work, on a busy machine
+HANGS = "#!/bin/sh\nsleep 600 &\nsleep 600\n"
+START_S = 200.0  # for a command to be in the middle of its work, on a busy machine
+ALONE_S = 1.5  # of a command that starts no process, to be in the middle of its work on an idle machine
+SIGNALS: Final = (signal.SIGTERM, signal.SIGKILL, signal.SIGINT)
 
 
-def descendants(pid: int) -> list[int]:
-    """Return the processes below one, however deep."""
-    parents: dict[int, list[int]] = {}
-    for folder in Path("/proc").iterdir():
-        with suppress(OSError, ValueError):
-            if folder.name.isdigit():
-                parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
-                parents.setdefault(parent, []).append(int(folder.name))
-    found, waiting = [], [pid]
-    while waiting:
-        below = parents.get(waiting.pop(), [])
-        found += below
-        waiting += below
-    return found
+class Line(NamedTuple):
+    """A command line, and whether it starts processes, which hang."""
+
+    words: str
+    alone: bool = False
+    endless: bool = False
 
 
-def product(folder: Path, script: str | None = None) -> Path:
-    """Write the starter's plan, with scripts that never end if none is given to each part."""
-    place = folder / "product"
-    shutil.copytree(STARTER, place)
-    for path in (place / "parts").glob("*.py"):
-        if script is not None:
-            path.write_text(script)
-    return place
+LINES: Final = (
+    Line("part endless tray", endless=True),
+    Line("build endless --out made --no-pictures", endless=True),
+    Line("batch batch.json --out made --jobs 1", endless=True),
+    Line("watch endless --no-browser", endless=True),
+    Line("mcp --root .", endless=True),
+    Line("generate box --model x --api-base ADDRESS --out made --no-pictures", endless=True),
+    Line("resume live --api-base ADDRESS", endless=True),
+    Line("install freecad", endless=True),
+    Line("audit run/export/urdf/product.urdf"),
+    Line("sim run/export/mjcf/product.xml"),
+    Line("convert run/export/step/product.step made.urdf"),
+    Line("adopt run/export/mjcf/product.xml --out made --no-audit"),
+    Line("pull run run/export/freecad/product.FCStd --out made"),
+    Line("edit run --set width=50 --out made --no-pictures"),
+    Line("replay RECORDED --out made"),
+    Line("doctor"),
+    Line("bench score nothing --task arch_stone_seven", alone=True),
+    Line("export run --to step,usd,urdf", alone=True),
+    Line("certify run --budget 600", alone=True),
+    Line("check run", alone=True),
+    Line("render run --out made", alone=True),
+    Line("show run --no-browser --out made.html", alone=True),
+)
+BRIEF: Final = {"new", "verify-certificate", "memory", "completion", "skill"}
+"""Commands that start no process and end within a second."""
 
 
-def built(folder: Path) -> None:
-    product(folder)
-    words = ["build", "product", "--out", "run", "--no-pictures"]
+def test_each_command_has_a_line() -> None:
+    assert {line.words.split()[0] for line in LINES} | BRIEF == set(COMMANDS)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a product, one whose scripts never end, a batch of it, and a run with exports."""
+    folder = tmp_path_factory.mktemp("made")
+    for name in ("product", "endless"):
+        shutil.copytree(STARTER, folder / name)
+    for path in (folder / "endless" / "parts").glob("*.py"):
+        path.write_text(ENDLESS)
+    (folder / "batch.json").write_text(json.dumps({"items": [{"plan": "endless", "formats": ["urdf"]}]}))
+    words = ["build", "product", "--out", "run", "--no-pictures", "--export", "urdf,mjcf,step,freecad"]
     subprocess.run([*ARTICAD, *words], cwd=folder, check=True, capture_output=True, timeout=400)
+    return folder
 
 
-def ended_by(number: signal.Signals, words: list[str], folder: Path, is_busy: Callable[[list[int]], bool], **more: str) -> None:
+def ended_by(number: signal.Signals, words: list[str], folder: Path, is_busy: Callable[[int], bool], say: bytes = b"") -> None:
     """Start a command, wait until it is busy, end it, and look at what is left."""
     temporary = folder / "temporary"
     temporary.mkdir()
-    environment = os.environ | {"TMPDIR": str(temporary), "ARTICAD_CACHE": str(folder / "cache")} | more
-    process = subprocess.Popen(
+    (folder / "bin").mkdir()
+    (folder / "bin" / "freecadcmd").write_text(HANGS)  # what the installer asks for its version
+    (folder / "bin" / "freecadcmd").chmod(0o755)
+    environment = os.environ | {"TMPDIR": str(temporary), "ARTICAD_CACHE": str(folder / "cache"), "XDG_DATA_HOME": str(folder / "data")}
+    if words[0] == "install":
+        environment["PATH"] = f"{folder / 'bin'}:{environment['PATH']}"
+
+    def leftovers() -> list[int]:
+        return started_with(str(temporary))  # a process of ours has it in its environment, whoever started it
+
+    with subprocess.Popen(
         [*ARTICAD, *words],
         cwd=folder,
         env=environment,
+        stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         preexec_fn=_heeds_interrupts,  # noqa: PLW1509 - this process starts no thread before
-    )
-    with process:
-        until = time.monotonic() + START_S
-        while not is_busy(children := descendants(process.pid)):
-            assert process.poll() is None, "it ended by itself"
-            assert time.monotonic() < until, "it never became busy"
-            time.sleep(0.05)
-        process.send_signal(number)
-        process.wait(30)
-    assert gone(children)
+    ) as process:
+        try:
+            assert process.stdin is not None
+            process.stdin.write(say)
+            process.stdin.flush()
+            until = time.monotonic() + START_S
+            while not is_busy(process.pid):
+                assert process.poll() is None, "it ended by itself"
+                assert time.monotonic() < until, "it never became busy"
+                time.sleep(0.02)
+            children = descendants(process.pid)
+            process.send_signal(number)
+            assert gone([process.pid, *children], more=leftovers), leftovers()
+        finally:
+            process.kill()
     subprocess.run(
         [sys.executable, "-c", "from articad.processes import scratch; scratch.folder('x')"], env=environment, check=True, timeout=100
     )
     assert list(temporary.iterdir()) == []
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT])
-def test_generate_with_an_endpoint_that_hangs(number: signal.Signals, tmp_path: Path) -> None:
+def said_to(words: list[str]) -> bytes:
+    """Return what a client says to the server of tools so that it builds a part that never ends; nothing to other commands."""
+    if words[0] != "mcp":
+        return b""
+    client = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "x", "version": "1"}}
+    call = {"name": "build_part", "arguments": {"design": "endless", "part": "tray"}}
+    messages = (
+        {"id": 1, "method": "initialize", "params": client},
+        {"method": "notifications/initialized"},
+        {"id": 2, "method": "tools/call", "params": call},
+    )
+    return b"".join(json.dumps({"jsonrpc": "2.0"} | message).encode() + b"\n" for message in messages)
+
+
+def end(line: Line, number: signal.Signals, made: Path, folder: Path) -> None:
+    place = folder / "made"
+    shutil.copytree(made, place)
     with hostile(ways.hang) as endpoint:
-        words = ["generate", "a box with a lid", "--model", "x", "--api-base", endpoint.address, "--out", "run", "--no-pictures"]
-        ended_by(number, words, tmp_path, lambda children: endpoint.requests > 0 and len(children) > 1)
+        words = line.words.replace("ADDRESS", endpoint.address).replace("RECORDED", str(RECORDED)).split()
+        if words[0] == "resume":
+            begun = ["generate", "box", "--model", "x", "--api-base", "http://127.0.0.1:9/v1", "--out", "live", "--no-pictures"]
+            subprocess.run([*ARTICAD, *begun], cwd=place, check=False, capture_output=True, timeout=400)
+        began = time.monotonic()
+
+        def is_busy(pid: int) -> bool:
+            if words[0] in {"generate", "resume"}:
+                return endpoint.requests > 0
+            return bool(descendants(pid)) or (line.alone and time.monotonic() - began > ALONE_S)
+
+        ended_by(number, words, place, is_busy, said_to(words))
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT])
-def test_batch_with_scripts_that_never_end(number: signal.Signals, tmp_path: Path) -> None:
-    product(tmp_path, ENDLESS)
-    (tmp_path / "batch.json").write_text(json.dumps({"items": [{"plan": "product", "formats": ["urdf"]}]}))
-    ended_by(number, ["batch", "batch.json", "--out", "made", "--jobs", "1"], tmp_path, lambda children: len(children) > 2)
+@pytest.mark.parametrize(("turn", "line"), enumerate(LINES), ids=[line.words.split()[0] for line in LINES])
+def test_a_command_that_is_ended_leaves_nothing(turn: int, line: Line, made: Path, tmp_path: Path) -> None:
+    """Each command by one signal, in turn."""
+    end(line, SIGNALS[turn % len(SIGNALS)], made, tmp_path)
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
-@pytest.mark.parametrize(
-    "words", [["certify", "run", "--budget", "600"], ["export", "run", "--to", "step,freecad"]], ids=["certify", "export"]
-)
-def test_work_on_a_run(words: list[str], number: signal.Signals, tmp_path: Path) -> None:
-    built(tmp_path)
-    began = time.monotonic()
-    ended_by(number, words, tmp_path, lambda children: bool(children) or time.monotonic() - began > 1.5)
+@pytest.mark.crash
+@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize("line", LINES, ids=[line.words.split()[0] for line in LINES])
+def test_every_command_by_every_signal(number: signal.Signals, line: Line, made: Path, tmp_path: Path) -> None:
+    end(line, number, made, tmp_path)

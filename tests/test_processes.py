@@ -8,7 +8,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,6 +16,7 @@ import pytest
 import articad
 from articad.processes import launcher, scratch
 from articad.processes.launcher import Limits
+from tests.leftovers import alive, gone
 from tests.planting import planted
 
 PACKAGE = Path(articad.__file__).parent
@@ -160,23 +160,6 @@ def test_memory_files_and_output_are_bounded() -> None:
     assert out.endswith(b"end")
 
 
-def alive(pid: int) -> bool:
-    """Return whether a process runs; one that is only not yet waited for does not."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
-def gone(pids: list[int], seconds: float = 5.0) -> bool:
-    until = time.monotonic() + seconds
-    while any(map(alive, pids)):
-        if time.monotonic() > until:
-            return False
-        time.sleep(0.05)
-    return True
-
-
 def test_the_whole_group_is_killed_when_time_is_up_and_when_the_leader_ends() -> None:
     late = launcher.run(["/bin/sh", "-c", "sleep 300 & echo $!; sleep 300"], limits=Limits(seconds=1))
     early = launcher.run(["/bin/sh", "-c", "sleep 300 & echo $!"], limits=Limits(seconds=200))
@@ -233,9 +216,7 @@ def test_no_process_outlives_its_parent_and_no_folder_the_next_start(work: str, 
         children = [int(word) for _ in range(2 if work is ENGINE else 1) for word in parent.stdout.readline().split()]
         assert all(map(alive, children))
         parent.send_signal(number)
-        parent.wait(30)
-
-    assert gone(children)
+        assert gone([parent.pid, *children])
     subprocess.run([sys.executable, "-c", "from articad.processes import scratch; scratch.folder('x')"], env=environment, check=True)
     assert list(temporary.iterdir()) == []
 

@@ -92,10 +92,13 @@ def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
     engines = tuple(options.engine or ENGINES)
     target = Path(options.target)
     if target.suffix.lower() in SIMULATED:
-        verdict, assembly = simulate_file(target, engines=engines, seconds=options.seconds), readable(target) if options.film else None
+        with terminal.progress("Simulating"):
+            verdict = simulate_file(target, engines=engines, seconds=options.seconds)
+            assembly = readable(target) if options.film else None
     else:
         assembly = loaded(options.target, options, terminal)
-        verdict = simulate_assembly(assembly, options.target, engines=engines, seconds=options.seconds)
+        with terminal.progress("Simulating"):
+            verdict = simulate_assembly(assembly, options.target, engines=engines, seconds=options.seconds)
     report = verdict.to_json()
     rows = [
         (
@@ -132,8 +135,11 @@ def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: AuditOp
     from articad.auditing.examine import AUDITED, audit_file, audit_made
 
     if Path(options.target).suffix.lower() in AUDITED:
-        return audit_file(options.target, choices)
-    return audit_made(loaded(options.target, options, terminal), options.target, choices)
+        with terminal.progress("Auditing"):
+            return audit_file(options.target, choices)
+    made = loaded(options.target, options, terminal)
+    with terminal.progress("Auditing"):
+        return audit_made(made, options.target, choices)
 
 
 def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: AuditOptions) -> Report:

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
+    from articad.commands.steps import stage
     from articad.formats import NAMED
     from articad.runs.record import assembly_of, record_export
     from articad.runs.run import Run
@@ -63,14 +64,18 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         "keep_frames": options.keep_frames,
     }
     exports: dict[str, Report] = {}
-    if options.out is None:
-        with Run.open(options.run) as run:
-            exports = {name: record_export(run, assembly, name, strict=options.strict, **choices) for name in options.formats}
-    else:
-        for name in options.formats:
-            bundle = NAMED[name].write(assembly, strict=options.strict, **choices)
-            main = bundle.write(Path(options.out) / name)[0]
-            exports[name] = bundle.to_json() | {"folder": str(main.parent), "main": str(main)}
+    with terminal.progress("Exporting", total=len(options.formats)) as tell:
+        if options.out is None:
+            with Run.open(options.run) as run:
+                for name in options.formats:
+                    with stage(tell, name):
+                        exports[name] = record_export(run, assembly, name, strict=options.strict, **choices)
+        else:
+            for name in options.formats:
+                with stage(tell, name):
+                    bundle = NAMED[name].write(assembly, strict=options.strict, **choices)
+                    main = bundle.write(Path(options.out) / name)[0]
+                exports[name] = bundle.to_json() | {"folder": str(main.parent), "main": str(main)}
     summaries.print_exports(exports, terminal)
     return {"schema": "articad.exports/1", "ok": all(export["ok"] for export in exports.values()), "exports": exports, "findings": []}
 
@@ -101,7 +106,8 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     target = Path(options.target)
     more: dict[str, Any] = {"keep_frames": True} if options.keep_frames else {}  # a format without link frames refuses it
     read = {"root": options.root, "fuse": options.fuse, "srdf": options.srdf}
-    assembly, bundle = convert(options.source, target, strict=options.strict, **read, **more)
+    with terminal.progress("Converting"):
+        assembly, bundle = convert(options.source, target, strict=options.strict, **read, **more)
     report = bundle.to_json() | {"folder": str(target.parent), "main": str(target)}
     terminal.findings(assembly.findings)
     summaries.print_exports({getattr(format_of(target), "name", ""): report}, terminal)

@@ -48,23 +48,24 @@ def _render(options: argparse.Namespace, terminal: Terminal) -> Report:
         raise ArticadError("An animation has a background: leave out --transparent, or draw --views.", stage="render")
     assembly = loaded(options.target, options, terminal)
     out = Path(options.out)
-    if options.motion:
-        files = write_motion(assembly, options.motion, out, size=options.size, clean=clean)
-    else:
-        only = options.parts.split(",") if options.parts else None
-        files = write_views(
-            assembly,
-            [view for view in options.views.split(",") if view],
-            out,
-            size=options.size,
-            only=only,
-            section=options.section,
-            explode=options.explode,
-            renderer=options.renderer,
-            show_overlaps=options.overlaps,
-            clean=clean,
-            transparent=options.transparent,
-        )
+    with terminal.progress("Drawing"):
+        if options.motion:
+            files = write_motion(assembly, options.motion, out, size=options.size, clean=clean)
+        else:
+            only = options.parts.split(",") if options.parts else None
+            files = write_views(
+                assembly,
+                [view for view in options.views.split(",") if view],
+                out,
+                size=options.size,
+                only=only,
+                section=options.section,
+                explode=options.explode,
+                renderer=options.renderer,
+                show_overlaps=options.overlaps,
+                clean=clean,
+                transparent=options.transparent,
+            )
     for file in files:
         terminal.say(str(file))
     return {"schema": "articad.pictures/1", "ok": True, "files": [str(file) for file in files], "findings": []}

@@ -68,7 +68,8 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
             else "Name a run, or the certificate.json that `articad certify RUN` wrote into it."
         )
         raise ReadError.at(str(file), message, hint, said=message)
-    faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
+    with terminal.progress("Checking"):
+        faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
     stated = [] if faults else _stated(json.loads(read_file(file, RECORD_BYTES)))
     for line in [*faults, *stated]:
         terminal.say(f"  {line}")

@@ -41,14 +41,16 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
     if (Path(options.target) / "request.json").is_file():
         with Run.view(options.target) as run, terminal.progress("Reading") as tell:
             assembly, documents = assembly_of(run, progress=tell), documents_of(run)
-        if options.out is None:
-            with Run.open(options.target) as run:
-                page = record_page(run, assembly)
-        else:
-            page = _written(Path(options.out), report_page(assembly, documents))
+        with terminal.progress("Writing"):
+            if options.out is None:
+                with Run.open(options.target) as run:
+                    page = record_page(run, assembly)
+            else:
+                page = _written(Path(options.out), report_page(assembly, documents))
     else:
         assembly = loaded(options.target, options, terminal)
-        text = report_page(assembly, Documents(checks=assembly.check().to_json()))
+        with terminal.progress("Checking"):
+            text = report_page(assembly, Documents(checks=assembly.check().to_json()))
         page = _written(Path(options.out or Path(tempfile.mkdtemp(prefix="articad-")) / f"{_file_name(assembly.name)}.html"), text)
     terminal.say(str(page))
     if options.browser and not webbrowser.open(page.resolve().as_uri()):
