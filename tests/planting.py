@@ -19,3 +19,11 @@ def planted(folder: Path) -> Path:
         for name in sorted(names):
             (place / f"{name}.py").write_text(text)
     return mark
+
+
+def written_sparse(path: Path, beginning: bytes, size: int = 0) -> None:
+    """Write a file that takes no room: what follows its beginning are zeros that are not stored."""
+    with path.open("wb") as stream:
+        stream.write(beginning)
+        if size > len(beginning):
+            stream.truncate(size)

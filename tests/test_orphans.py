@@ -24,7 +24,6 @@ from tests.test_processes import _heeds_interrupts
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in Linux's /proc")]
 
 ARTICAD = [sys.executable, "-P", "-c", "import sys; from articad.cli import main; sys.exit(main())"]
-STARTER = Path(__file__).resolve().parents[1] / "articad" / "starter"
 RECORDED = Path(__file__).parent / "recordings" / "toy"
 ENDLESS = "def build(part):\n    while True:\n        pass\n"
 HANGS = "#!/bin/sh\nsleep 600 &\nsleep 600\n"
@@ -78,7 +77,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a product, one whose scripts never end, a batch of it, and a run with exports."""
     folder = tmp_path_factory.mktemp("made")
     for name in ("product", "endless"):
-        shutil.copytree(STARTER, folder / name)
+        subprocess.run([*ARTICAD, "new", name], cwd=folder, check=True, capture_output=True, timeout=400)
     for path in (folder / "endless" / "parts").glob("*.py"):
         path.write_text(ENDLESS)
     (folder / "batch.json").write_text(json.dumps({"items": [{"plan": "endless", "formats": ["urdf"]}]}))

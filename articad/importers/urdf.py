@@ -249,23 +249,10 @@ def _require_numbers(document: Any, path: Path) -> None:
             try:
                 numbers = [float(word) for word in (text.replace(",", " ") if name in {"size", "scale"} else text).split()]
             except ValueError:
-                if element.tag in {
-                    "origin",
-                    "axis",
-                    "limit",
-                    "dynamics",
-                    "mass",
-                    "inertia",
-                    "mimic",
-                    "box",
-                    "cylinder",
-                    "sphere",
-                    "capsule",
-                    "mesh",
-                }:
+                if element.tag in _MEASURED:
                     raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a number.") from None
                 continue
-            if len(numbers) not in _COUNTS.get(name, (1,)) and element.tag in {"origin", "axis", "mesh", "box"}:
+            if element.tag in _MEASURED and len(numbers) not in _COUNTS.get(name, (1,)) and (numbers or element.tag != "dynamics"):
                 raise unreadable(
                     path,
                     f"line {element.sourceline}",
@@ -276,6 +263,9 @@ def _require_numbers(document: Any, path: Path) -> None:
                 raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a plausible number.")
 
 
+_MEASURED = frozenset(
+    ("origin", "axis", "limit", "dynamics", "mass", "inertia", "mimic", "box", "cylinder", "sphere", "capsule", "mesh")
+)  # elements whose attributes are numbers; an empty one of <dynamics> counts as none
 _COUNTS = {"xyz": (3,), "rpy": (3,), "quat_xyzw": (4,), "size": (3,), "scale": (1, 3)}
 _LARGEST = 1e12  # m, kg, N: beyond it arithmetic on poses loses all precision
 
