@@ -239,7 +239,9 @@ def accessor(count: int, view: bool = True) -> dict[str, Any]:
 
 def dae_doubled() -> bytes:
     nodes = "".join(f'<node id="n{i}"><instance_node url="#n{i + 1}"/><instance_node url="#n{i + 1}"/></node>' for i in range(30))
-    whole = DAE.format(unit="", up="Z_UP").replace("<library_visual_scenes>", f"<library_nodes>{nodes}<node id='n30'/></library_nodes><library_visual_scenes>")
+    whole = DAE.format(unit="", up="Z_UP").replace(
+        "<library_visual_scenes>", f"<library_nodes>{nodes}<node id='n30'/></library_nodes><library_visual_scenes>"
+    )
     return whole.replace("</node></visual_scene>", '<instance_node url="#n0"/></node></visual_scene>').encode()
 
 
@@ -248,7 +250,9 @@ PLY = "ply\nformat {}\nelement vertex {}\n{}element face {}\nproperty list uchar
 XYZ = "property float x\nproperty float y\nproperty float z\n"
 mesh("an STL that claims four billion", "a.stl", lambda: STL + struct.pack("<I", 2**32 - 1) + bytes(5000))
 mesh("an STL of nothing, 1 GiB", "a.stl", lambda: STL + struct.pack("<I", ((1 << 30) - 84) // 50), (1 << 30) - ((1 << 30) - 84) % 50)
-mesh("an STL of nothing, 400 MiB", "a.stl", lambda: STL + struct.pack("<I", ((400 << 20) - 84) // 50), (400 << 20) - ((400 << 20) - 84) % 50)
+mesh(
+    "an STL of nothing, 400 MiB", "a.stl", lambda: STL + struct.pack("<I", ((400 << 20) - 84) // 50), (400 << 20) - ((400 << 20) - 84) % 50
+)
 mesh("an STL of 100 GiB", "a.stl", lambda: STL, 100 << 30)
 mesh("an STL of words", "a.stl", lambda: b"solid " + b"x " * 20_000_000)
 mesh("an STL of digits", "a.stl", lambda: b"solid a\nfacet normal 0 0 " + DIGITS.encode())
@@ -262,15 +266,39 @@ mesh("a binary PLY that claims it", "a.ply", lambda: PLY.format("binary_little_e
 mesh("a PLY of properties", "a.ply", lambda: PLY.format("ascii 1.0", 3, "".join(f"property float p{i}\n" for i in range(MANY)), 1).encode())
 mesh("a PLY of elements", "a.ply", lambda: b"ply\nformat ascii 1.0\n" + b"element a 0\n" * MANY + b"end_header\n")
 mesh("a PLY whose faces are long", "a.ply", lambda: PLY.format("binary_little_endian 1.0", 3, XYZ, 100_000).encode() + b"\xff" * 9_000_000)
-mesh("a glTF of nodes that double", "a.glb", lambda: glb({"nodes": doubled(30), "scenes": [{"nodes": [0]}], "meshes": TRIANGLE} | accessor(3), POINTS))
-mesh("a glTF of nodes in a circle", "a.glb", lambda: glb({"nodes": [{"children": [0], "mesh": 0}], "scenes": [{"nodes": [0]}], "meshes": TRIANGLE} | accessor(3), POINTS))
-mesh("a glTF that claims four billion", "a.glb", lambda: glb({"meshes": TRIANGLE, "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]} | accessor(2**32, view=False)))
+mesh(
+    "a glTF of nodes that double",
+    "a.glb",
+    lambda: glb({"nodes": doubled(30), "scenes": [{"nodes": [0]}], "meshes": TRIANGLE} | accessor(3), POINTS),
+)
+mesh(
+    "a glTF of nodes in a circle",
+    "a.glb",
+    lambda: glb({"nodes": [{"children": [0], "mesh": 0}], "scenes": [{"nodes": [0]}], "meshes": TRIANGLE} | accessor(3), POINTS),
+)
+mesh(
+    "a glTF that claims four billion",
+    "a.glb",
+    lambda: glb({"meshes": TRIANGLE, "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]} | accessor(2**32, view=False)),
+)
 mesh("a glTF that claims more than it has", "a.glb", lambda: glb({"meshes": TRIANGLE, "nodes": [{"mesh": 0}]} | accessor(HUGE), POINTS))
-mesh("a glTF of nodes", "a.glb", lambda: glb({"meshes": TRIANGLE, "nodes": [{"mesh": 0}] * 100_000, "scenes": [{"nodes": list(range(100_000))}]} | accessor(3), POINTS))
+mesh(
+    "a glTF of nodes",
+    "a.glb",
+    lambda: glb({"meshes": TRIANGLE, "nodes": [{"mesh": 0}] * 100_000, "scenes": [{"nodes": list(range(100_000))}]} | accessor(3), POINTS),
+)
 mesh("a glTF of deep lists", "a.glb", lambda: struct.pack("<4sIII4s", b"glTF", 2, 2_000_020, 2_000_000, b"JSON") + b"[" * 2_000_000)
-mesh("a glTF of another file", "a.gltf", lambda: json.dumps({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 9, "uri": "/dev/zero"}]} | {"meshes": TRIANGLE}).encode())
+mesh(
+    "a glTF of another file",
+    "a.gltf",
+    lambda: json.dumps({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 9, "uri": "/dev/zero"}]} | {"meshes": TRIANGLE}).encode(),
+)
 mesh("a DAE of nodes that double", "a.dae", dae_doubled)
-mesh("a DAE of nodes in a circle", "a.dae", lambda: dae_doubled().replace(b"<node id='n30'/>", b'<node id="n30"><instance_node url="#n0"/></node>'))
+mesh(
+    "a DAE of nodes in a circle",
+    "a.dae",
+    lambda: dae_doubled().replace(b"<node id='n30'/>", b'<node id="n30"><instance_node url="#n0"/></node>'),
+)
 mesh("a DAE of numbers", "a.dae", lambda: DAE.format(unit="", up="Z_UP").replace("0 0 0 1 0 0", "1 " * 8_000_000).encode())
 mesh("a DAE of a unit", "a.dae", lambda: DAE.format(unit=f'<unit meter="{DIGITS}"/>', up="Z_UP").encode())
 
@@ -348,4 +376,9 @@ for _name, _content in PLANS.items():
 text("certificate: deep lists", "certificate.json", lambda: "[" * 10_000_000, "verify-certificate FILE")
 text("certificate: a number", "certificate.json", lambda: DIGITS, "verify-certificate FILE")
 text("batch: deep lists", "batch.json", lambda: "[" * 10_000_000, "batch FILE --out made")
-text("batch: items", "batch.json", lambda: json.dumps({"items": [{"plan": "x"}] * 3 + [{"plan": "y" * 10_000_000}]}), "batch FILE --out made --jobs 1")
+text(
+    "batch: items",
+    "batch.json",
+    lambda: json.dumps({"items": [{"plan": "x"}] * 3 + [{"plan": "y" * 10_000_000}]}),
+    "batch FILE --out made --jobs 1",
+)

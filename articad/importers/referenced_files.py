@@ -19,6 +19,7 @@ from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
 MAX_FILES = 100  # largest number of files that include each other
 MAX_COPIES = 1000  # largest number of copies by <replicate>, <composite> and the like, nested ones multiplied
 MAX_COPIED = 200_000  # elements of all copies
+MAX_POINTS = 1 << 24  # of textures and height fields that an engine makes: 4096 x 4096
 MAX_NAMES = 100_000  # largest number of places in which named files may lie
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
 
@@ -55,6 +56,7 @@ class _Closure:
         self._folder = folder
         self._seen: list[Path] = []
         self._copied = 0  # elements, counted once per copy
+        self._points = 0.0  # of textures and height fields without a file
 
     def follow(self, path: Path) -> None:
         """Read a model with everything that it includes, check its names, then do the same for the models that it names."""
@@ -85,6 +87,11 @@ class _Closure:
         self._copied += sum(copies.values())
         if self._copied > MAX_COPIED:
             raise unreadable(path, "", f"With all copies it has {self._copied} elements; the maximum is {MAX_COPIED}.")
+        self._points += sum(_points(element) for element in document.iter("texture", "hfield"))
+        if self._points > MAX_POINTS:
+            raise unreadable(
+                path, "", f"Its textures and height fields have {self._points:g} points without a file; the maximum is {MAX_POINTS}."
+            )
         for element in _read_by_engines(document):
             names = [(value, path, element.sourceline) for name, value in element.attrib.items() if name.startswith("file") and value]
             named += names
@@ -152,6 +159,15 @@ def _copies(document: Any, path: Path, times: int) -> dict[Any, int]:
         if count > MAX_COPIES:
             raise unreadable(path, f"line {element.sourceline}", f"It requests {count} copies; the maximum is {MAX_COPIES}.")
     return copies
+
+
+def _points(element: Any) -> float:
+    """Return how many points an engine makes for a texture or a height field that no file states."""
+    sides = ("width", "height") if element.tag == "texture" else ("nrow", "ncol")
+    try:
+        return math.prod(max(float(element.get(side, "1")), 1.0) for side in sides) * (6 if element.get("type") == "cube" else 1)
+    except ValueError:
+        return 0.0  # the engine refuses it
 
 
 def _count(element: Any, path: Path) -> int:

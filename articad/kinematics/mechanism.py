@@ -32,6 +32,9 @@ from articad.kinematics.reach import Reach, reach
 from articad.kinematics.solution import Solution
 from articad.kinematics.tree import KinematicTree
 
+MOST_ENTRIES = 8_000_000
+"""Entries of the matrix of all loops and couplings, 64 MB: 1,000 loops of one joint each, or 100 among 10,000 joints."""
+
 
 class _Compiled(NamedTuple):
     """Joints and data computed from their frames."""
@@ -73,12 +76,26 @@ class Mechanism:
         self.parts, self.ground = tuple(parts), ground
         self.given_joints, self.couplings = tuple(joints), tuple(couplings)
         self.T_ground = SE3.identity() if T_ground is None else T_ground
+        self._require_bounded()
         graph = JointGraph(self.parts, ground, self.given_joints)
         findings = Findings([*graph.findings(), *joint_findings(self.given_joints), *_coupling_findings(self)])
         if not findings.ok:
             raise PlanError("\n".join(map(str, findings.errors)), findings=findings)
         self._structure = findings
         self._given = _compiled(self, self.given_joints, graph)
+
+    def _require_bounded(self) -> None:
+        """Refuse a mechanism whose equations no memory holds: their matrix is dense.
+
+        Six rows for each loop and one for each coupling, a column for each coordinate.
+        """
+        loops = max(0, len(self.given_joints) - len(self.parts) + 1)
+        rows, columns = 6 * loops + len(self.couplings), sum(len(joint.rest) for joint in self.given_joints)
+        if rows * columns > MOST_ENTRIES:
+            raise KinematicsError(
+                f"{loops} loops and {len(self.couplings)} couplings of {columns} coordinates are {rows * columns} entries of a matrix;"
+                f" the maximum is {MOST_ENTRIES}."
+            )
 
     # --- structure
 

@@ -85,6 +85,34 @@ def test_products_and_sums_of_copies_are_bounded(text: str, reason: str, tmp_pat
         read_mjcf(path)
 
 
+@pytest.mark.parametrize(
+    "asset",
+    [
+        '<texture type="2d" builtin="gradient" width="26000" height="26000" name="t"/>',
+        '<texture type="cube" builtin="flat" width="2000" height="2000" name="t"/>',
+        '<texture type="2d" builtin="flat" width="3000" height="3000" name="t"/>' * 2,
+        '<hfield name="h" nrow="40000" ncol="1e5" size="1 1 1 1"/>',
+    ],
+)
+def test_points_of_textures_and_height_fields_are_counted_before_they_are_made(
+    asset: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("articad.importers.mjcf.compiled_mjcf", never)
+    path = tmp_path / "a.xml"
+    path.write_text(f"<mujoco><asset>{asset}</asset><worldbody>{GEOM}</worldbody></mujoco>")
+    with pytest.raises(ReadError, match=r"points without a file; the maximum is"):
+        read_mjcf(path)
+
+
+@pytest.mark.parametrize("count", [3000, 20_000])
+def test_loops_are_counted_before_their_equations_are_made(count: int, tmp_path: Path) -> None:
+    joint = '<joint name="{}" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint>'
+    path = tmp_path / "a.urdf"
+    path.write_text(f'<robot name="r"><link name="a"/><link name="b"/>{"".join(joint.format(i) for i in range(count))}</robot>')
+    with pytest.raises(ReadError, match=rf"{count - 1} loops and 0 couplings"):
+        read_urdf(path)
+
+
 def test_copies_of_an_include_count_with_those_around_it(tmp_path: Path) -> None:
     (tmp_path / "inner.xml").write_text(f'<mujoco><replicate count="40">{GEOM}</replicate></mujoco>')
     path = tmp_path / "a.xml"
