@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.kernels.kernel import PartKernel
 from articad.kernels.results import PoisonedError, read_mesh
@@ -117,7 +118,14 @@ def _distance(recorded: Run, again: Run, files: Sequence[str]) -> float:
 def _meshes(recorded: Run, again: Run, files: Sequence[str]) -> Iterator[tuple[bytes, bytes]]:
     for name in files:
         if name.endswith("part.npz"):
-            yield tuple((run.path / name).read_bytes() if (run.path / name).is_file() else b"" for run in (recorded, again))  # type: ignore[misc]
+            yield _content(recorded, name), _content(again, name)
+
+
+def _content(run: Run, name: str) -> bytes:
+    try:
+        return read_file(run.path / name, RECORD_BYTES, root=run.path)
+    except OSError:
+        return b""
 
 
 def _apart(first: bytes, second: bytes) -> float:

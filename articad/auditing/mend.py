@@ -30,10 +30,11 @@ from articad.export.markup import child, document, number, numbers, rpy, tidy
 from articad.export.mjcf import STL_TRIANGLES
 from articad.export.names import Names
 from articad.export.urdf import write_urdf
+from articad.files import read_file
 from articad.geometry.inscribed import Piece
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
-from articad.geometry.mesh_files import write_obj, write_stl
+from articad.geometry.mesh_files import MAX_FILE_BYTES, write_obj, write_stl
 from articad.importers.reading import MM_PER_M, Folder, read_xml
 from articad.importers.referenced_files import package_of
 from articad.kernels.cache import BuildCache
@@ -378,7 +379,7 @@ def _meshes(root: Any, references: MeshReferences, mended: Mended, kept: Path | 
             as_it_is = path.suffix.lower() in {".stl", ".obj"} or raw is None
             suffix = path.suffix.lower() if as_it_is else ".stl" if len(raw.triangles) <= STL_TRIANGLES else ".obj"  # type: ignore[union-attr]
             if raw is None or as_it_is:
-                content = path.read_bytes()
+                content = read_file(path, MAX_FILE_BYTES)
             else:
                 content = write_stl(raw) if suffix == ".stl" else write_obj(raw)
                 converted.append(path.name)

@@ -16,10 +16,12 @@ from articad.batches import pool
 from articad.batches.items import BatchItem
 from articad.batches.pool import MEMORY_GB, RETRIES, Told
 from articad.errors import ReadError
+from articad.files import PLAN_BYTES, read_file
 from articad.plan.schema import AssemblyPlan
 
 MAKE_ITEM: Final = "articad.batches.items:make_stored"
 """The function that a worker calls for an item."""
+MOST_SAMPLES: Final = 100_000
 
 
 def read_batch(path: str | Path) -> list[BatchItem]:
@@ -34,7 +36,7 @@ def read_batch(path: str | Path) -> list[BatchItem]:
     """
     file = Path(path)
     try:
-        stored = json.loads(file.read_text(encoding="utf-8"))
+        stored = json.loads(read_file(file, PLAN_BYTES))
         rows = [
             *stored.get("items", []),
             *itertools.chain.from_iterable(_sampled(sample, file.parent) for sample in stored.get("sample", [])),
@@ -42,8 +44,8 @@ def read_batch(path: str | Path) -> list[BatchItem]:
         return [BatchItem.from_json(row | ({"plan": str((file.parent / row["plan"]).resolve())} if "plan" in row else {})) for row in rows]
     except OSError as error:
         raise _refused(file, f"It cannot be read: {error.strerror}.") from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise _refused(file, f"It is not a valid batch: {error!r}.") from error
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
+        raise _refused(file, f"It is not a valid batch: {repr(error)[:500]}.") from error
 
 
 def _sampled(sample: Mapping[str, Any], folder: Path) -> Iterator[Json]:
@@ -55,10 +57,10 @@ def _sampled(sample: Mapping[str, Any], folder: Path) -> Iterator[Json]:
     }
     if not ranges:
         raise ValueError("the plan gives no parameter a min and a max, so `parameters` must name ranges")
+    if not 0 < (count := int(sample["count"])) <= MOST_SAMPLES:
+        raise ValueError(f"count is {count}; the maximum is {MOST_SAMPLES}")
     low, high = (np.array([float(bounds[end]) for bounds in ranges.values()]) for end in (0, 1))
-    points = low + qmc.LatinHypercube(len(ranges), rng=np.random.default_rng(int(sample.get("seed", 0)))).random(int(sample["count"])) * (
-        high - low
-    )
+    points = low + qmc.LatinHypercube(len(ranges), rng=np.random.default_rng(int(sample.get("seed", 0)))).random(count) * (high - low)
     common = {name: sample[name] for name in ("gates", "formats", "kernel") if name in sample}
     for point in points:
         yield {"plan": sample["plan"], "values": {name: round(float(x), 4) for name, x in zip(ranges, point, strict=True)}} | common

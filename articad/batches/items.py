@@ -20,6 +20,7 @@ from articad import __version__
 from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
+from articad.files import PLAN_BYTES, SCRIPT_BYTES, read_file
 from articad.findings import Findings
 from articad.formats import NAMED
 from articad.kernels.choice import kernel_named
@@ -59,9 +60,10 @@ class BatchItem:
         """The digest that identifies the item."""
         folder = Path(self.plan)
         try:
-            scripts = {file.name: file.read_text(encoding="utf-8") for file in sorted((folder / "parts").glob("*.py"))}
-            text = (folder / "plan.json").read_text(encoding="utf-8")
-        except OSError as error:
+            found = sorted((folder / "parts").glob("*.py"))
+            scripts = {file.name: read_file(file, SCRIPT_BYTES, root=folder).decode() for file in found}
+            text = read_file(folder / "plan.json", PLAN_BYTES, root=folder).decode()
+        except (OSError, UnicodeDecodeError) as error:
             raise _refused(folder, f"It cannot be read: {error}.") from error
         key = {"plan": text, "scripts": scripts, "values": dict(sorted(self.values.items())), "gates": list(self.gates)}
         return digest(key | {"formats": list(self.formats), "kernel": self.kernel, "articad": __version__})

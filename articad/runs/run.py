@@ -209,7 +209,7 @@ class Run:
         run._sweep()
         with _writing(path):
             trace = path / _TRACE
-            if trace.exists() and (lines := trace.read_bytes()) and not lines.endswith(b"\n"):
+            if trace.exists() and (lines := read_file(trace, RECORD_BYTES, root=path)) and not lines.endswith(b"\n"):
                 run._append(b"\n")
         return run
 
@@ -555,7 +555,8 @@ class Run:
         self._require_lock()
         path = self.path / _TRACE
         with self._tracing, _writing(path):
-            handle = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+            flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+            handle = os.open(path, flags, 0o666)  # a link or a pipe may have been put there since the run was opened
             try:
                 os.write(handle, line)
             finally:

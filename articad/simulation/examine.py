@@ -6,13 +6,12 @@ import contextlib
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lxml import etree
-
 from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
 from articad.export.lowering import lower
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
+from articad.importers.reading import read_xml
 from articad.importers.referenced_files import package_of, require_closed
 from articad.processes import scratch
 from articad.simulation.expected import held_to_kinematics
@@ -74,8 +73,8 @@ class _Told(NamedTuple):
 def _told(path: Path) -> _Told:
     """Return the data of a file beyond what engines read; empty if it cannot be parsed, which engines will report."""
     try:
-        root = etree.parse(str(path), etree.XMLParser(resolve_entities=False, no_network=True)).getroot()
-    except (etree.XMLSyntaxError, OSError):
+        root = read_xml(path)
+    except ReadError:
         return _Told({}, {})
     if path.suffix.lower() != ".urdf":
         return _Told({}, {}, equalities=len(root.findall("equality/*")))

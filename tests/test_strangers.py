@@ -1,0 +1,102 @@
+"""Batches, runs and models of strangers that hold pipes, devices, links, or numbers and nesting beyond reason."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+import articad
+from articad.agents import drift
+from articad.batches.batch import read_batch
+from articad.batches.items import BatchItem
+from articad.errors import ReadError, WriteError
+from articad.runs.run import Run, RunRequest
+from articad.simulation import examine
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no pipes in folders")
+SECRET = "the first words of a secret"
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, '{"items": ' * 100_000, "null", '{"items": [{"plan": 1e400}]}', "\xff"])
+def test_a_batch_that_is_none_is_refused(text: str, tmp_path: Path) -> None:
+    (tmp_path / "batch.json").write_text(text, encoding="latin-1")
+    with pytest.raises(ReadError):
+        read_batch(tmp_path / "batch.json")
+
+
+@pytest.mark.parametrize("count", ["1000000000000", "1e308", "-1", "0"])
+def test_a_batch_of_more_samples_than_reason_is_refused(count: str, tmp_path: Path) -> None:
+    (tmp_path / "plan.json").write_text((Path(articad.__file__).parent / "starter" / "plan.json").read_text())
+    (tmp_path / "batch.json").write_text(f'{{"sample": [{{"plan": "plan.json", "count": {count}, "parameters": {{"width": [1, 2]}}}}]}}')
+    with pytest.raises(ReadError, match="count"):
+        read_batch(tmp_path / "batch.json")
+
+
+def test_a_batch_that_is_a_pipe_is_refused(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "batch.json")
+    with pytest.raises(ReadError, match="not a file"):
+        read_batch(tmp_path / "batch.json")
+
+
+@pytest.mark.parametrize("name", ["plan.json", "parts/a.py"])
+@pytest.mark.parametrize("kind", ["pipe", "link", "device"])
+def test_an_item_whose_plan_or_script_is_no_file_of_its_folder_is_refused(kind: str, name: str, tmp_path: Path) -> None:
+    folder = tmp_path / "product"
+    (folder / "parts").mkdir(parents=True)
+    (tmp_path / "secret").write_text(SECRET)
+    (folder / "plan.json").write_text("{}")
+    place = folder / name
+    place.unlink(missing_ok=True)
+    if kind == "pipe":
+        os.mkfifo(place)
+    else:
+        place.symlink_to(tmp_path / "secret" if kind == "link" else "/dev/zero")
+    with pytest.raises(ReadError, match="cannot be read") as error:
+        _ = BatchItem(str(folder)).digest
+    assert SECRET not in error.value.message
+
+
+def test_a_model_to_simulate_is_counted_before_it_is_parsed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    many = " ".join(f'a{number}="1"' for number in range(30_000))
+    (tmp_path / "a.urdf").write_text(f"<robot {many}/>")
+
+    def never(*_: object) -> None:
+        raise AssertionError("a tree was built")
+
+    monkeypatch.setattr("articad.importers.reading.etree.fromstring", never)
+    assert examine._told(tmp_path / "a.urdf").rest == {}
+
+
+def test_a_trace_that_became_a_link_is_not_written_through(tmp_path: Path) -> None:
+    mine = tmp_path / "mine"
+    mine.write_text("kept")
+    with Run.create(RunRequest(prompt="x"), out=tmp_path / "run") as run:
+        (tmp_path / "run" / "trace.jsonl").unlink(missing_ok=True)
+        (tmp_path / "run" / "trace.jsonl").symlink_to(mine)
+        with pytest.raises(WriteError):
+            run.trace("note", said="x")
+    assert mine.read_text() == "kept"
+
+
+def test_a_mesh_that_became_a_link_is_not_compared(tmp_path: Path) -> None:
+    (tmp_path / "secret").write_text(SECRET)
+    with Run.create(RunRequest(prompt="x"), out=tmp_path / "run") as run:
+        (tmp_path / "run" / "part.npz").symlink_to(tmp_path / "secret")
+        assert list(drift._meshes(run, run, ["part.npz"])) == [(b"", b"")]
+
+
+def test_no_module_parses_xml_by_its_path() -> None:
+    """`read_xml` counts before it parses; a parser that opens files itself does not."""
+    trees = {path.name: ast.parse(path.read_text(encoding="utf-8")) for path in Path(articad.__file__).parent.rglob("*.py")}
+    uses = {(name, ast.unparse(node)) for name, tree in trees.items() for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    found = [use for use in sorted(uses) if use[1] in {"etree.parse", "etree.iterparse", "ET.parse", "ET.iterparse"}]
+    assert found == []
+
+
+def test_a_batch_is_read(tmp_path: Path) -> None:
+    (tmp_path / "batch.json").write_text(json.dumps({"items": [{"plan": "product", "formats": ["urdf"]}]}))
+    assert [Path(item.plan).name for item in read_batch(tmp_path / "batch.json")] == ["product"]
