@@ -28,7 +28,7 @@ def main() -> int:
         page = browser.new_page(viewport={"width": 1200, "height": 760})
         page.goto(file.as_uri())
         page.wait_for_selector("html[data-ready]", state="attached")
-        page.wait_for_timeout(300)
+        page.wait_for_function("() => articad.view.settled")
         page.screenshot(path=KEPT)
         browser.close()
     print(KEPT.relative_to(ROOT))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     argument("--parts", metavar="NAMES", help="parts shown in full; the others are faded"),
     argument("--section", metavar="AXIS[=MM]", help="cut away everything beyond x, y or z (such as -y=12.5)"),
     argument(
-        "--explode", metavar="SHARE", type=float, default=0.0, help="move parts apart by this share of their distance from the middle"
+        "--explode", metavar="SHARE", type=float, default=0.0, help="pull parts out of each other along their joints; at 1 all are free"
     ),
     argument("--overlaps", action="store_true", help="draw overlaps of parts in red, on top of everything"),
     argument(

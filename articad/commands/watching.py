@@ -7,7 +7,8 @@ import hashlib
 import json
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from html import escape
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -18,9 +19,10 @@ from articad.files import PLAN_BYTES, read_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Terminal
+    from articad.errors import ArticadError
 
 _LOOK_S: Final = 0.3  # between two checks of the files
-_WAITING: Final = "<!doctype html><meta charset=utf-8><meta http-equiv=refresh content=1><title>articad</title><p>Building …"
+_LINES: Final = 8  # findings of a failed build that the page shows
 
 
 class PageServer:
@@ -36,6 +38,7 @@ class PageServer:
         self.page = ""
         self.version = ""
         self.message = ""
+        self.error: tuple[str, ...] = ()
         self._server = ThreadingHTTPServer(("127.0.0.1", port), _handler(self))
         self._server.daemon_threads = True
         self._thread = threading.Thread(target=self._server.serve_forever, daemon=True)
@@ -59,15 +62,42 @@ class PageServer:
         self._server.server_close()
 
 
+def _waiting(error: Sequence[str]) -> str:
+    """Return the page before the first build has succeeded."""
+    told = "".join(f"<p>{escape(line)}" for line in error) or "<p>Building …"
+    style = "body{font:16px/1.5 system-ui,sans-serif;margin:2rem;white-space:pre-wrap}" + (
+        "body{background:#a31515;color:#fff}" if error else ""
+    )
+    return (
+        '<!doctype html><html lang="en"><meta charset="utf-8"><meta http-equiv="refresh" content="1">'
+        f"<title>articad</title><style>{style}</style>{told}</html>"
+    )
+
+
+def lines_of(error: ArticadError, folder: Path) -> tuple[str, ...]:
+    """Return what a person needs to mend a failed build: what failed, then file, line, cause and hint of each finding."""
+    lines = []
+    for finding in error.findings[:_LINES]:
+        script = folder / "parts" / f"{finding.where.removeprefix('parts.')}.py"
+        where = f"parts/{script.name}" if script.is_file() else f"plan.json, {finding.where}"
+        hint = "" if finding.hint in finding.message else f" {finding.hint}"
+        lines.append(f"{where}: {finding.message}{hint}")
+    if len(error.findings) > _LINES:
+        lines.append(f"{len(error.findings) - _LINES} more: see the terminal.")
+    said = error.message.splitlines() or ["The plan has errors."]
+    head = said[0] if not any(finding.message in said[0] for finding in error.findings) else "The plan has errors."
+    return (head, *(lines or said[1:_LINES]))
+
+
 def _handler(served: PageServer) -> type[BaseHTTPRequestHandler]:
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
             if self.headers.get("Host") not in {f"127.0.0.1:{served.port}", f"localhost:{served.port}"}:
                 self.send_error(HTTPStatus.FORBIDDEN)
             elif self.path == "/version":
-                self._answer("application/json", json.dumps({"version": served.version, "message": served.message}))
+                self._answer("application/json", json.dumps({"version": served.version, "message": served.message, "error": served.error}))
             elif self.path == "/":
-                self._answer("text/html; charset=utf-8", served.page or _WAITING)
+                self._answer("text/html; charset=utf-8", served.page or _waiting(served.error))
             else:
                 self.send_error(HTTPStatus.NOT_FOUND)
 
@@ -149,9 +179,9 @@ def _rebuild(folder: Path, options: argparse.Namespace, terminal: Terminal, serv
         server.page = report_page(assembly, Documents(checks=checks.to_json(), plan=plan.dumps()), watch=version)
     except ArticadError as error:
         terminal.error(error)
-        server.message = error.message.splitlines()[0] if error.message else "The plan has errors; see the terminal."
+        server.message, server.error = "", lines_of(error, folder)
         return
-    server.version, server.message = version, ""
+    server.version, server.message, server.error = version, "", ()
     terminal.findings(checks.findings)
     terminal.say(f"{plan.name}: built in {time.monotonic() - started:.1f} s. {about_rest(checks.to_json()).sentence}")
     terminal.out.flush()

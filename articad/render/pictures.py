@@ -16,11 +16,12 @@ from articad.connectors.se3 import SE3
 from articad.errors import KernelUnavailableError, UnknownJointError
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
+from articad.interference.explosion import exploded
+from articad.interference.overlap_meshes import overlap_meshes
 from articad.kinematics.joints import Coordinate, Joint, JointType
 from articad.render import vtk
 from articad.render.annotate import Labels, annotate, room_beside
 from articad.render.camera import Camera
-from articad.render.overlaps import overlap_meshes
 from articad.render.raycast import cast
 from articad.render.scene import DrawnScene, Section, scene_of
 from articad.render.shade import overlaid, reduced, shade
@@ -109,7 +110,7 @@ def render_views(
         size: Width and height of each picture [pixels].
         only: Parts shown in full; the others are faded.
         section: A cutting plane, or its short form such as `x` or `-y=12.5`.
-        explode: Distance by which parts are moved apart, as a share of their distance from the middle.
+        explode: How far each part is moved out of its carrier along their joint; at 1, all parts are free of each other.
         highlights: Meshes in the ground frame drawn over everything.
         show_overlaps: Draw common volumes of parts in red, over everything.
         supersample: Rays per pixel in each direction.
@@ -218,9 +219,10 @@ def _prepared(
     """Return the scene of one pose, exploded and cut."""
     poses = _poses(assembly, assembly.mechanism.rest if q is None else q)
     marks = [*highlights, *(overlap_meshes(assembly.parts, poses) if show_overlaps else ())]
-    scene = scene_of(assembly.parts, poses, joints=assembly.joints, only=only, highlights=marks)
+    mechanism = assembly.mechanism
     if explode:
-        scene = scene.exploded(explode)
+        poses = exploded(assembly.parts, tuple(mechanism.tree.edges), _poses(assembly, mechanism.rest), poses, explode)
+    scene = scene_of(assembly.parts, poses, joints=() if explode else assembly.joints, only=only, highlights=marks)
     cut = Section.parse(section, scene.bounds) if isinstance(section, str) else section
     return DrawnScene(scene.items, scene.axes, cut)
 

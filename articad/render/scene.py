@@ -115,15 +115,6 @@ class DrawnScene:
         """Return the scene with lighter meshes within `tolerance` [mm] of its own, drawn with smooth normals."""
         return replace(self, items=tuple(replace(item, mesh=simplified(item.mesh, tolerance), smooth=True) for item in self.items))
 
-    def exploded(self, factor: float) -> DrawnScene:
-        """Return the scene with every item moved away from the middle by `factor` times its own distance from it."""
-        middle = self.bounds.mean(axis=0)
-        moved = []
-        for item in self.items:
-            centre = item.vertices.mean(axis=0) if len(item.mesh.vertices) else middle
-            moved.append(replace(item, T_ground=SE3.from_translation(factor * (centre - middle)) @ item.T_ground))
-        return replace(self, items=tuple(moved), axes=())
-
 
 def scene_of(
     parts: Mapping[str, Part],

@@ -19,8 +19,8 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 from articad.arrays import FloatArray
+from articad.geometry.finish import finish_of
 from articad.render.camera import Camera
-from articad.render.materials import finish_of
 from articad.render.raycast import BACKGROUND, Buffers, cast, occlusion
 from articad.render.scene import DrawnScene
 from articad.render.shade import edges

@@ -11,7 +11,9 @@ from articad.assembly import Assembly
 from articad.connectors.mate import Mate
 from articad.errors import ArticadError
 from articad.export.meshes import drawn_shapes
+from articad.geometry.finish import finish_of
 from articad.geometry.part import Part
+from articad.interference.explosion import explosion
 from articad.kinematics.joints import Coordinate, Joint, JointType
 from articad.report.drawing import drawn_mesh
 
@@ -83,6 +85,9 @@ def _parts(assembly: Assembly) -> tuple[list[Json], list[Json]]:
     meshes: list[Json] = []
     known: dict[str, int] = {}
     parts: list[Json] = []
+    mechanism = assembly.mechanism
+    rest = dict(zip(mechanism.parts, mechanism.at_rest, strict=True))
+    ways = explosion(assembly.parts, tuple(mechanism.tree.edges), rest)
     for name, part in assembly.parts.items():
         shapes = []
         for shape in drawn_shapes(part):
@@ -92,7 +97,21 @@ def _parts(assembly: Assembly) -> tuple[list[Json], list[Json]]:
                 known[shape.mesh.digest] = len(meshes)
                 meshes.append(drawn_mesh(shape.mesh))
             shapes.append({"mesh": known[shape.mesh.digest], "pose": shape.frame.data.tolist(), "color": shape.color})
-        parts.append({"name": name, "material": part.material, "color": part.color, "middle": _middle(part), "shapes": shapes})
+        look = finish_of(part.material or "")
+        parts.append(
+            {
+                "name": name,
+                "material": part.material,
+                "color": part.color,
+                "finish": {"metal": look.metal, "roughness": look.roughness, "opacity": look.opacity, "gloss": look.gloss},
+                "mass": None if part.mass is None else part.mass.mass,
+                "size": _extent(part),
+                "middle": _middle(part),
+                "explode": ways[name].tolist() if name in ways else [0.0, 0.0, 0.0],
+                "facts": [],
+                "shapes": shapes,
+            }
+        )
     return meshes, parts
 
 
@@ -102,6 +121,15 @@ def _middle(part: Part) -> list[float]:
         return [0.0, 0.0, 0.0]
     middle: list[float] = ((np.min([c[0] for c in corners], axis=0) + np.max([c[1] for c in corners], axis=0)) / 2).tolist()
     return middle
+
+
+def _extent(part: Part) -> list[float] | None:
+    """Return the size of the bounding box in the part's frame [mm]."""
+    corners = [shape.placed.bounds for shape in part.visuals or part.collisions if len(shape.mesh.vertices)]
+    if not corners:
+        return None
+    size: list[float] = (np.max([c[1] for c in corners], axis=0) - np.min([c[0] for c in corners], axis=0)).tolist()
+    return size
 
 
 def _joint(joint: Joint, index: dict[str, int], column: int) -> Json:

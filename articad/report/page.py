@@ -15,7 +15,8 @@ from importlib.resources import files
 
 from articad.assembly import Assembly
 from articad.report.model import viewer_model
-from articad.report.sections import Documents, all_sections, badges, total_mass
+from articad.report.overlaps import drawn_overlaps
+from articad.report.sections import Documents, all_sections, badges, facts_about, summary, total_mass
 
 __all__ = ["Documents", "report_page"]
 
@@ -32,6 +33,9 @@ def report_page(assembly: Assembly, documents: Documents | None = None, *, watch
     """
     documents = documents or Documents()
     model = viewer_model(assembly)
+    model["overlaps"] = drawn_overlaps(assembly, documents.checks, documents.certificate)
+    for part in model["parts"]:
+        part["facts"] = facts_about(part["name"], documents)
     if watch is not None:
         model["watch"] = watch
     script, style = _asset("viewer.js"), _asset("viewer.css")
@@ -44,9 +48,11 @@ def report_page(assembly: Assembly, documents: Documents | None = None, *, watch
             '<meta name="generator" content="articad">\n',
             f"<title>{escape(assembly.name)} – articad</title>\n<style>{style}</style>\n</head>\n<body>\n",
             _header(assembly, documents),
-            "<main>\n",
+            '<div id="banner" role="alert" hidden></div>\n<main>\n',
             _stage(assembly),
-            '<div id="panel">\n<p id="status" role="status" aria-live="polite"></p>\n',
+            '<div id="panel" tabindex="0" role="region" aria-label="controls and reports">\n<p id="status" role="status" aria-live="polite"></p>\n',
+            f'<p class="unseen">{escape(summary(assembly, documents))}</p>\n',
+            '<div id="card" hidden></div>\n',
             _motion(),
             all_sections(assembly, documents),
             _keys(),
@@ -97,25 +103,40 @@ def _header(assembly: Assembly, documents: Documents) -> str:
 
 def _stage(assembly: Assembly) -> str:
     views = "".join(f'<button type="button" data-view="{view}">{view}</button>' for view in _VIEWS)
-    tools = "".join(f'<button type="button" id="tool-{key}" aria-pressed="false">{key}</button>' for key in ("axes", "names", "measure"))
+    tools = "".join(
+        f'<button type="button" id="tool-{key}" aria-pressed="false">{key}</button>' for key in ("parallel", "axes", "names", "measure")
+    )
     axes = "".join(f'<line id="triad-{a}" class="{a}" x1="30" y1="30" x2="30" y2="30"/>' for a in "xyz")
     names = "".join(f'<text id="triad-{a}-name" class="{a}" x="30" y="30">{a}</text>' for a in "xyz")
+    cuts = "".join(
+        f'<div class="cut"><label><input type="checkbox" id="cut-{a}"> {a}</label>'
+        f'<input type="range" id="cut-{a}-at" aria-label="position of the section across {a}" min="0" max="1" step="any" value="0.5">'
+        f'<label><input type="checkbox" id="cut-{a}-flip"> other side</label></div>'
+        for a in "xyz"
+    )
+    saved = (
+        ("save-png", "picture (PNG)"),
+        ("save-gif", "animation (GIF)"),
+        ("save-webm", "film (WebM)"),
+        ("link", "copy link to this view"),
+    )
+    saves = "".join(f'<button type="button" id="{key}">{label}</button>' for key, label in saved)
     return (
         f'<div id="stage"><canvas id="canvas" tabindex="0" role="application" aria-label="Model of {escape(assembly.name)}: '
         'arrow keys turn it, plus and minus zoom"></canvas><div id="labels" aria-hidden="true"></div>\n'
-        f'<div id="tools">{views}{tools}<button type="button" id="reset">rest</button>'
-        '<button type="button" id="unfocus" hidden>show all</button></div>\n<p id="measured" hidden></p>\n'
+        f'<div id="tools"><button type="button" id="play" aria-pressed="false">▶ Play</button>{views}{tools}'
+        '<button type="button" id="reset">rest</button><button type="button" id="unfocus" hidden>show all</button></div>\n'
+        '<p id="measured" hidden></p>\n'
         f'<svg id="triad" viewBox="0 0 60 60" aria-hidden="true">{axes}{names}</svg>\n'
         '<div id="cuts"><label>explode <input type="range" id="explode" min="0" max="1.5" step="any" value="0"></label>'
-        '<label>section <select id="section-axis"><option value="">none</option><option>x</option><option>y</option><option>z</option></select>'
-        '<input type="range" id="section-at" aria-label="where the section is" min="0" max="1" step="any" value="0.5"></label>'
-        '<label><input type="checkbox" id="section-flip"> other side</label></div></div>\n'
+        f'<details class="menu"><summary>section</summary><div>{cuts}</div></details>'
+        f'<details class="menu"><summary>save</summary><div>{saves}</div></details></div></div>\n'
     )
 
 
 def _motion() -> str:
     return (
-        '<details class="section" open><summary>Motion</summary><div id="drivers"></div>\n'
+        '<details class="section" open><summary><h2>Motion</h2></summary><div id="drivers"></div>\n'
         '<details id="followers" hidden><summary class="quiet">Joints that follow</summary>'
         '<table><tbody id="followers-rows"></tbody></table></details></details>\n'
     )
@@ -125,10 +146,13 @@ def _keys() -> str:
     rows: list[tuple[str, str]] = [
         ("1 … 7", "views: iso, front, right, top, back, left, bottom"),
         ("arrows, + −", "turn and zoom, when the model has the focus"),
+        ("space", "play, or pause"),
+        ("o", "parallel or perspective rays"),
         ("a n m", "joint axes and frames, names of parts, measure"),
+        ("h", "hide or show the selected part"),
         ("r", "back to rest"),
         ("f", "show the whole"),
-        ("Esc", "show all parts, or end measuring"),
+        ("Esc", "deselect, show all parts, or end measuring"),
     ]
     listed = "".join(f"<tr><td><kbd>{escape(key)}</kbd></td><td>{escape(what)}</td></tr>" for key, what in rows)
-    return f'<details class="section"><summary>Keys</summary><table><tbody>{listed}</tbody></table></details>\n'
+    return f'<details class="section"><summary><h2>Keys</h2></summary><table><tbody>{listed}</tbody></table></details>\n'

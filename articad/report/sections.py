@@ -94,10 +94,54 @@ def badges(documents: Documents, *, moves: bool = True) -> str:
     )
 
 
+def summary(assembly: Assembly, documents: Documents) -> str:
+    """Return what is known in a few sentences, for those who do not see the picture."""
+    told = [each.sentence for each in statements(documents.checks, documents.certificate, moves=bool(assembly.drivers))]
+    moves = ", ".join(
+        f"{driver.name} ({_bounds(driver.lower, driver.upper, driver.unit)})" for driver in assembly.drivers if driver.unit != "1"
+    )
+    findings = Counter(finding["severity"] for finding in documents.findings)
+    listed = ", ".join(f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in findings.items())
+    return " ".join(
+        [
+            f"{assembly.name} has {len(assembly.parts)} parts. What moves: {moves or 'nothing'}.",
+            *told,
+            f"Findings: {listed or 'none'}.",
+        ]
+    )
+
+
+def facts_about(part: str, documents: Documents) -> list[list[str]]:
+    """Return what the reports say about one part, as pairs of a heading and a sentence."""
+    facts = []
+    for heading, report in (("at rest", documents.checks), ("motion", documents.certificate)):
+        if report is None:
+            continue
+        own = [pair for pair in report["pairs"] if part in pair["parts"]]
+        if heading == "at rest":
+            own = [pair for pair in own if pair["over"] == "rest"]
+            count = Counter(pair["verdict"] for pair in own)
+            words = ", ".join(f"{number} {verdict}" for verdict, number in count.items())
+            facts.append([heading, f"{_pairs_counted(len(own))} checked: {words}" if own else "no other part is near"])
+        else:
+            proven = sum(pair["strength"]["kind"] == "certified" for pair in own)
+            facts.append([heading, f"{proven} of {_pairs_counted(len(own))} certified" if own else "no other part comes near"])
+    if documents.certificate is None:
+        facts.append(["motion", "not certified"])
+    concerned = sum(part in (finding.get("parts") or ()) for finding in documents.findings)
+    if concerned:
+        facts.append(["findings", str(concerned)])
+    return facts
+
+
+def _pairs_counted(count: int) -> str:
+    return f"{count} pair{'' if count == 1 else 's'}"
+
+
 def _section(title: str, content: str, *, opened: bool = False) -> str:
     if not content:
         return ""
-    return f'<details class="section"{" open" if opened else ""}><summary>{escape(title)}</summary>\n{content}</details>\n'
+    return f'<details class="section"{" open" if opened else ""}><summary><h2>{escape(title)}</h2></summary>\n{content}</details>\n'
 
 
 def _show(text: str, parts: Sequence[str], pose: Mapping[str, float] | None, known: set[str]) -> Html:
@@ -354,7 +398,7 @@ def _cut(text: str) -> str:
 
 
 def _files(documents: Documents) -> str:
-    buttons = [("save-pose", "this pose"), ("save-png", "picture"), ("save-stl", "STL of this pose")]
+    buttons = [("save-pose", "this pose"), ("save-stl", "STL of this pose")]
     if documents.plan is not None:
         buttons.append(("save-plan", "plan.json"))
     made = "".join(f'<button type="button" id="{key}">{escape(label)}</button>' for key, label in buttons)
@@ -369,4 +413,4 @@ def _link(path: str) -> Html:
 
 
 def _scroll(table: str) -> str:
-    return f'<div class="scroll">{table}</div>' if table else ""
+    return f'<div class="scroll" tabindex="0" role="group">{table}</div>' if table else ""

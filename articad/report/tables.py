@@ -34,10 +34,14 @@ def html_table(columns: Sequence[str], rows: Iterable[Sequence[Cell]], *, number
         numbers: Indices of numeric columns.
     """
     kind = [' class="number"' if index in numbers else "" for index in range(len(columns))]
+    label = [f' data-label="{escape(column)}"' if column else "" for column in columns]  # shown where the table becomes cards
     body = "".join(
-        "<tr>" + "".join(f"<td{kind[index]}>{html_text(cell)}</td>" for index, cell in enumerate(row)) + "</tr>\n" for row in rows
+        "<tr>" + "".join(f"<td{kind[index]}{label[index]}>{html_text(cell)}</td>" for index, cell in enumerate(row)) + "</tr>\n"
+        for row in rows
     )
     if not body:
         return ""
-    head = "".join(f'<th scope="col"{kind[index]}>{escape(column)}</th>' for index, column in enumerate(columns))
+    head = "".join(
+        (f'<th scope="col"{kind[index]}>{escape(column)}</th>' if column else "<td></td>") for index, column in enumerate(columns)
+    )
     return f"<table><thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody></table>\n"

@@ -11,11 +11,11 @@ from articad.assembly import Assembly
 from articad.commands.options import extent
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
+from articad.geometry.finish import finish_of
 from articad.geometry.part import Part
 from articad.geometry.shapes import box, sphere
 from articad.kinematics import declare
 from articad.render import Camera, DrawnMesh, DrawnScene, cast, clean_motion, png, render_clean
-from articad.render.materials import finish_of
 from articad.render.raycast import BACKGROUND
 from articad.render.studio import framed, studio
 

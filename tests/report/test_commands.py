@@ -158,7 +158,9 @@ def test_a_saved_file_is_built_and_served_and_an_error_keeps_the_old_page(starte
         )
 
         def wait(_seconds: float) -> None:
-            seen.append((json.loads(ask(server, "version"))["version"], ask(server, ""), json.loads(ask(server, "version"))["message"]))
+            seen.append(
+                (json.loads(ask(server, "version"))["version"], ask(server, ""), "\n".join(json.loads(ask(server, "version"))["error"]))
+            )
             try:
                 next(steps)()
             except StopIteration:
@@ -175,7 +177,9 @@ def test_a_saved_file_is_built_and_served_and_an_error_keeps_the_old_page(starte
     assert f'"watch":"{versions[1]}"' in pages[1]
     assert pages[2] == pages[1]
     assert messages[:2] == ("", "")
-    assert messages[2]
+    assert "lid" in messages[2]
+    assert "line 2" in messages[2]
+    assert "not today" in messages[2], "file, line and cause"
     assert fingerprint(folder) != versions[1]
 
 

@@ -4,6 +4,10 @@ import { fromPose, IDENTITY, Mechanism, quaternionAt, quaternionFromVector, quat
 import { Solver } from "./solver.js";
 import { DIRECTIONS, View } from "./view.js";
 import { save, shapesOf, stl } from "./files.js";
+import { between, described } from "./features.js";
+import { gifOf } from "./gif.js";
+import { cycle, Player } from "./player.js";
+import { watch } from "./watch.js";
 
 const DEGREES = 180 / Math.PI;
 const model = JSON.parse(document.getElementById("model").textContent);
@@ -13,7 +17,6 @@ const $ = (id) => document.getElementById(id);
 let Q = mechanism.rest.slice();
 let view = null;
 const measuring = { on: false, points: [] };
-const playing = new Map();
 
 // ------------------------------------------------------------------ the model
 
@@ -41,9 +44,18 @@ function set(values, { others = "stay" } = {}) {
 
 function update() {
   view?.place(mechanism.poses(Q));
+  view?.showOverlaps(isHere);
   for (const control of controls) control.refresh();
   refreshFollowers();
   refreshMeasure();
+}
+
+// Whether the model stands in a pose: named coordinates as given, the drivers that are not named at rest.
+function isHere(pose) {
+  return model.drivers.every((driver) => {
+    const columns = driver.kind === "ball" ? [0, 1, 2, 3].map((k) => driver.column + k) : [driver.column];
+    return columns.every((column) => Math.abs(Q[column] - (pose?.[mechanism.columns[column].name] ?? mechanism.rest[column])) < 1e-6);
+  });
 }
 
 function say(text) {
@@ -65,7 +77,7 @@ function element(tag, attributes = {}, ...children) {
 }
 
 // A slider with a number beside it, for a value in rad or mm.
-function slider({ label, unit, lower, upper, endless, read, write, driver }) {
+function slider({ label, unit, lower, upper, endless, read, write, restValue, driver }) {
   const factor = unit === "rad" ? DEGREES : 1;
   const id = `driver-${controls.length}`;
   const range = element("input", { type: "range", id, min: lower * factor, max: upper * factor, step: "any" });
@@ -73,11 +85,16 @@ function slider({ label, unit, lower, upper, endless, read, write, driver }) {
   if (!endless) Object.assign(number, { min: lower * factor, max: upper * factor });
   const name = element("label", { htmlFor: id, textContent: label });
   const play = element("button", { type: "button", className: "play", textContent: "▶", "aria-label": `Move ${label} to and fro`, "aria-pressed": "false" });
+  const mover = { label, lower, upper, endless, rest: 0, read, write };
   const move = (value) => write(Math.min(Math.max(value, endless ? -Infinity : lower), endless ? Infinity : upper));
   range.dataset.driver = driver;
   range.addEventListener("input", () => move(range.valueAsNumber / factor));
   number.addEventListener("change", () => Number.isFinite(number.valueAsNumber) && move(number.valueAsNumber / factor));
-  play.addEventListener("click", () => toggle(play, { lower, upper, read, move, endless }));
+  play.addEventListener("click", () => {
+    const own = playing === play;
+    stop();
+    if (!own) start(play, [mover], read());
+  });
   for (const target of [range, number]) target.addEventListener("focus", () => emphasise(driver));
   const limits = endless ? "no limits" : `${shown(lower, unit)} … ${shown(upper, unit)}`;
   name.append(element("small", { className: "limits", textContent: limits }));
@@ -91,30 +108,33 @@ function slider({ label, unit, lower, upper, endless, read, write, driver }) {
       range.setAttribute("aria-valuetext", `${value.toFixed(1)} ${unit === "rad" ? "degrees" : "millimetres"}`);
     },
   };
+  mover.restValue = restValue;
+  control.mover = mover;
   controls.push(control);
   return row;
 }
 
 const wrap = (value, lower, upper) => lower + ((((value - lower) % (upper - lower)) + (upper - lower)) % (upper - lower));
 
-function toggle(button, { lower, upper, read, move, endless }) {
-  if (playing.has(button)) {
-    cancelAnimationFrame(playing.get(button));
-    playing.delete(button);
-  } else {
-    let way = 1, before = performance.now();
-    const step = (now) => {
-      const share = Math.min(now - before, 100) / 4000;
-      before = now;
-      const next = read() + way * share * (upper - lower);
-      const arrived = move(next);
-      if (!arrived || (!endless && (next >= upper || next <= lower))) way = -way;
-      playing.set(button, requestAnimationFrame(step));
-    };
-    playing.set(button, requestAnimationFrame(step));
+// One joint, or the whole product: every joint over its range and back, one after the other.
+let playing = null;
+const player = new Player();
+
+function start(button, movers, from = null) {
+  playing = button;
+  pressed(button, true);
+  button.textContent = button.id === "play" ? "❚❚ Pause" : "❚❚";
+  for (const mover of movers) mover.rest = mover.restValue();
+  player.start(movers, { from, together: !solver.needed });
+}
+
+function stop() {
+  player.stop();
+  if (playing) {
+    pressed(playing, false);
+    playing.textContent = playing.id === "play" ? "▶ Play" : "▶";
   }
-  button.textContent = playing.has(button) ? "❚❚" : "▶";
-  button.setAttribute("aria-pressed", String(playing.has(button)));
+  playing = null;
 }
 
 function buildDrivers() {
@@ -125,6 +145,7 @@ function buildDrivers() {
       box.append(slider({
         label: driver.name, unit: driver.unit, lower: driver.lower, upper: driver.upper, endless: driver.endless, driver: driver.name,
         read: () => Q[driver.column],
+        restValue: () => mechanism.rest[driver.column],
         write: (value) => set({ [driver.name]: value }),
       }));
     }
@@ -135,8 +156,8 @@ function buildDrivers() {
 // A ball is swung about x and y of the parent connector, and twisted about z before that.
 function ballSliders(driver) {
   const { column } = driver;
-  const state = () => {
-    const [x, y, z, w] = Q.slice(column, column + 4);
+  const state = (at = Q) => {
+    const [x, y, z, w] = at.slice(column, column + 4);
     const twist = 2 * Math.atan2(z, w);
     const [sx, sy, , sw] = quaternionProduct([x, y, z, w], [0, 0, -Math.sin(twist / 2), Math.cos(twist / 2)]);
     const angle = 2 * Math.atan2(Math.hypot(sx, sy), sw), sine = Math.hypot(sx, sy) || 1;
@@ -146,6 +167,7 @@ function ballSliders(driver) {
     label: `${driver.joint} ${what}`, unit: "rad", driver: driver.joint, endless: false,
     lower: k < 2 ? -driver.cone : driver.twist[0], upper: k < 2 ? driver.cone : driver.twist[1],
     read: () => state()[k],
+    restValue: () => state(mechanism.rest)[k],
     write: (value) => {
       const next = state();
       next[k] = value;
@@ -197,22 +219,16 @@ function buildTables() {
       const arrived = set(pose ?? {}, { others: "rest" });
       view?.focus(partIndices(parts));
       $("unfocus").hidden = false;
+      flyToOverlap(partIndices(parts));
       if (arrived) say(`${text} ${pose ? `Moved to ${Object.entries(pose).map(([name, value]) => `${name} = ${shown(value, mechanism.columns.find((c) => c.name === name)?.unit)}`).join(", ")}.` : "Shown at rest."}`);
       for (const other of document.querySelectorAll("tr.shown")) other.classList.remove("shown");
       button.closest("tr")?.classList.add("shown");
-      if (matchMedia("(max-width: 800px)").matches) $("stage").scrollIntoView();
+      if (narrow.matches) $("stage").scrollIntoView();
     });
   }
-  for (const box of document.querySelectorAll("[data-visible]")) {
-    box.addEventListener("change", () => view?.show(Number(box.dataset.visible), box.checked));
-  }
+  for (const box of document.querySelectorAll("[data-visible]")) box.addEventListener("change", () => show(Number(box.dataset.visible), box.checked));
   for (const button of document.querySelectorAll("[data-part]")) {
-    button.addEventListener("click", () => {
-      const index = Number(button.dataset.part);
-      const alone = view?.focused?.size === 1 && view.focused.has(index);
-      view?.focus(alone ? [] : [index]);
-      $("unfocus").hidden = alone;
-    });
+    button.addEventListener("click", () => view && select(Number(button.dataset.part)));
   }
   for (const button of document.querySelectorAll("[data-stl]")) {
     button.addEventListener("click", () => {
@@ -222,8 +238,21 @@ function buildTables() {
   }
 }
 
-function stop() {
-  for (const button of [...playing.keys()]) button.click();
+const narrow = matchMedia("(max-width: 1000px)");
+
+function show(part, visible) {
+  view?.show(part, visible);
+  for (const box of document.querySelectorAll(`[data-visible="${part}"]`)) box.checked = visible;
+  refreshCard();
+}
+
+// The camera goes to the overlap of two parts that is seen in the present pose, if there is one.
+function flyToOverlap(parts) {
+  const overlap = view?.overlaps.find((each) => each.solid.visible && each.parts.every((part) => parts.includes(part)));
+  if (!overlap) return;
+  overlap.solid.geometry.computeBoundingSphere();
+  const { center, radius } = overlap.solid.geometry.boundingSphere;
+  view.fly(center, radius);
 }
 
 // ------------------------------------------------------------------ tools
@@ -252,12 +281,24 @@ function buildTools() {
     refreshMeasure();
     if (measuring.on) say("Click two points; clicks snap to corners.");
   });
-  $("explode").addEventListener("input", () => {
-    view.explode($("explode").valueAsNumber);
-    refreshMeasure();
+  $("tool-parallel").addEventListener("click", () => {
+    view.project(view.camera !== view.parallel);
+    pressed($("tool-parallel"), view.camera === view.parallel);
   });
-  const cut = () => view.section("xyz".indexOf($("section-axis").value || "-"), $("section-at").valueAsNumber, $("section-flip").checked);
-  for (const id of ["section-axis", "section-at", "section-flip"]) $(id).addEventListener("input", cut);
+  $("play").addEventListener("click", () => {
+    const own = playing === $("play");
+    stop();
+    if (!own) start($("play"), controls.map((control) => control.mover));
+  });
+  $("play").hidden = !controls.length;
+  $("explode").addEventListener("input", () => explode($("explode").valueAsNumber));
+  for (const axis of "xyz") {
+    for (const input of [$(`cut-${axis}`), $(`cut-${axis}-flip`)]) input.addEventListener("input", cut);
+    $(`cut-${axis}-at`).addEventListener("input", () => {
+      $(`cut-${axis}`).checked = true;
+      cut();
+    });
+  }
   $("reset").addEventListener("click", reset);
   $("unfocus").addEventListener("click", unfocus);
   $("theme").addEventListener("click", () => {
@@ -265,10 +306,40 @@ function buildTools() {
     const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
     root.dataset.theme = dark ? "light" : "dark";
   });
-  $("save-png").addEventListener("click", async () => save(`${model.name}.png`, Uint8Array.from(atob(view.picture().split(",")[1]), (c) => c.charCodeAt(0)), "image/png"));
+  $("save-png").addEventListener("click", async () => save(`${model.name}.png`, await picture(), "image/png"));
+  $("save-gif").addEventListener("click", () => film(async (frames) => save(`${model.name}.gif`, await gifOf(frames, { width: 480, centiseconds: 8, tell: say }), "image/gif")));
+  $("save-webm").addEventListener("click", saveVideo);
+  $("save-webm").hidden = !window.MediaRecorder?.isTypeSupported?.("video/webm");
+  $("link").addEventListener("click", link);
   $("save-stl").addEventListener("click", () => save(`${model.name}.stl`, stl(shapesOf(model, view.meshes, mechanism.poses(Q))), "model/stl"));
   $("save-pose").addEventListener("click", () => save(`${model.name}.pose.json`, JSON.stringify({ schema: "articad.pose/1", q: named_q(), poses: poses() }, null, 1), "application/json"));
   $("save-plan")?.addEventListener("click", () => save("plan.json", $("plan").textContent, "application/json"));
+}
+
+function explode(amount) {
+  $("explode").value = amount;
+  view.explode(amount);
+  view.showOverlaps(isHere);
+  refreshMeasure();
+}
+
+// The sections as their controls have them.
+function cut() {
+  view.section(Object.fromEntries([..."xyz"].map((axis) => [
+    axis, $(`cut-${axis}`).checked ? { share: $(`cut-${axis}-at`).valueAsNumber, flipped: $(`cut-${axis}-flip`).checked } : null,
+  ])));
+}
+
+function setCuts(sections) {
+  for (const axis of "xyz") {
+    const given = sections?.[axis];
+    $(`cut-${axis}`).checked = Boolean(given);
+    if (given) {
+      $(`cut-${axis}-at`).value = given.share;
+      $(`cut-${axis}-flip`).checked = given.flipped;
+    }
+  }
+  cut();
 }
 
 function reset() {
@@ -286,14 +357,150 @@ function unfocus() {
 
 function refreshMeasure() {
   if (!view) return;
-  const points = measuring.points.map((point) => view.worldOf(point));
-  view.mark(points);
-  if (points.length === 2) {
-    const [dx, dy, dz] = points[1].clone().sub(points[0]).toArray();
-    const between = measuring.points.map(({ part }) => mechanism.parts[part]).join(" – ");
-    $("measured").textContent = `${between}: ${points[0].distanceTo(points[1]).toFixed(3)} mm (Δx ${dx.toFixed(3)}, Δy ${dy.toFixed(3)}, Δz ${dz.toFixed(3)})`;
-  } else $("measured").textContent = measuring.on ? `${points.length} of 2 points` : "";
   $("measured").hidden = !measuring.on;
+  const taken = measuring.points.map((one) => ({ ...one, at: view.worldOf(one), way: one.direction && view.directionOf(one) }));
+  if (taken.length < 2) {
+    $("measured").textContent = measuring.on ? `${taken.length} of 2 points${taken.length ? `: ${described(taken[0])}` : ""}` : "";
+    return view.mark(taken.map(({ at }) => at));
+  }
+  const { distance, angle, delta, from, to } = between(...taken);
+  view.mark(taken.map(({ at }) => at), from ? [[from, to]] : []);
+  const names = taken.map(({ part }) => mechanism.parts[part]).join(" – ");
+  const kinds = delta ? "" : ` (${taken.map(described).join("; ")})`;
+  const told = [
+    distance === undefined ? "" : `${distance.toFixed(3)} mm`,
+    angle ? `${(angle * DEGREES).toFixed(2)}°` : angle === 0 ? "parallel" : "",
+    delta ? `(Δx ${delta.x.toFixed(3)}, Δy ${delta.y.toFixed(3)}, Δz ${delta.z.toFixed(3)})` : "",
+  ];
+  $("measured").textContent = `${names}: ${told.filter(Boolean).join(delta ? " " : ", ")}${kinds}`;
+}
+
+// ------------------------------------------------------------------ pictures and films
+
+// Paint the model on a canvas of its own, over the stage's background.
+function painted(target, source, width, height) {
+  Object.assign(target, { width, height });
+  const pen = target.getContext("2d", { willReadFrequently: true }), [top, bottom] = getComputedStyle($("stage")).getPropertyValue("--stage-colors").split(",");
+  const gradient = pen.createLinearGradient(0, 0, 0, height);
+  gradient.addColorStop(0, top.trim());
+  gradient.addColorStop(1, bottom.trim());
+  pen.fillStyle = gradient;
+  pen.fillRect(0, 0, width, height);
+  pen.drawImage(source, 0, 0, width, height);
+  return target;
+}
+
+function picture() {
+  const target = document.createElement("canvas");
+  view.picture((source, width, height) => painted(target, source, width, height));
+  return new Promise((done) => target.toBlob(done, "image/png"));
+}
+
+const FILM_FRAMES = 48;
+
+// The motion that Play shows, as so many painted pictures; then the model stands as before.
+async function film(use) {
+  stop();
+  const before = Q, movers = controls.map((control) => control.mover);
+  for (const mover of movers) mover.rest = mover.restValue();
+  const total = FILM_FRAMES * Math.min(3, Math.max(1, movers.length));
+  const target = document.createElement("canvas");
+  try {
+    await use({
+      count: movers.length ? total : 1,
+      at: async (index, width) => {
+        cycle(movers, index / total, { together: !solver.needed });
+        update();
+        view.picture((source, wide, high) => painted(target, source, wide, high), width);
+        await new Promise((done) => setTimeout(done));
+        return target;
+      },
+    });
+    say("Saved.");
+  } finally {
+    Q = before;
+    update();
+  }
+}
+
+// A WebM film: frames are handed to the browser's own recorder one by one.
+function saveVideo() {
+  film(async ({ count, at }) => {
+    const width = 960, stage = document.createElement("canvas");
+    const copy = (made) => painted(stage, made, made.width, made.height);
+    copy(await at(0, width));
+    const stream = stage.captureStream(25), recorder = new MediaRecorder(stream, { mimeType: "video/webm", videoBitsPerSecond: 4e6 });
+    const pieces = [];
+    recorder.ondataavailable = ({ data }) => pieces.push(data);
+    const ended = new Promise((done) => (recorder.onstop = done));
+    recorder.start();
+    for (let index = 0; index < count; index++) {
+      say(`Frame ${index + 1} of ${count}`);
+      copy(await at(index, width));
+      await new Promise((done) => setTimeout(done, 40));
+    }
+    recorder.stop();
+    await ended;
+    save(`${model.name}.webm`, new Blob(pieces), "video/webm");
+  });
+}
+
+// ------------------------------------------------------------------ what is seen, as an address
+
+const rounded = (value) => Number(value.toPrecision(7));
+
+function state() {
+  return {
+    q: Object.fromEntries(mechanism.columns.map((column, index) => [column.name, Q[index]]).filter(([, value], index) => value !== mechanism.rest[index])),
+    camera: view.camera.position.toArray().map(rounded), target: view.controls.target.toArray().map(rounded),
+    ...(view.camera === view.parallel ? { parallel: true, zoom: rounded(view.parallel.zoom), distance: rounded(view.distance) } : {}),
+    ...(view.explosion ? { explode: view.explosion } : {}),
+    ...(view.cutting ? { sections: view.sections } : {}),
+    ...(view.groups.every((group) => group.visible) ? {} : { hidden: view.groups.filter((group) => !group.visible).map((group) => group.name) }),
+  };
+}
+
+function restore({ q, camera, target, parallel, zoom, distance, explode: apart, sections, hidden }) {
+  if (apart) explode(apart);
+  if (sections) setCuts(sections);
+  for (const name of hidden ?? []) if (mechanism.parts.includes(name)) show(mechanism.parts.indexOf(name), false);
+  if (q) set(q, { others: "rest" });
+  if (!camera) return;
+  view.controls.target.fromArray(target);
+  view.perspective.position.fromArray(camera);
+  if (parallel) {
+    view.project(true);
+    pressed($("tool-parallel"), true);
+    Object.assign(view.parallel, { zoom });
+    view.distance = distance;
+    view.parallel.position.fromArray(camera);
+  }
+  view.controls.update();
+  view.ask();
+}
+
+async function link() {
+  const address = `#${encodeURIComponent(JSON.stringify(state()))}`;
+  try {
+    history.replaceState(null, "", address);
+  } catch {
+    location.hash = address;
+  }
+  await navigator.clipboard?.writeText(location.href).then(() => say("The link to this view is copied."), () => say("The address of this page now is a link to this view."));
+}
+
+function restoreLink() {
+  const text = location.hash.slice(1);
+  if (!text) return;
+  if (text === "play") {
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) $("play").click();
+    return;
+  }
+  try {
+    restore(JSON.parse(decodeURIComponent(text)));
+  } catch {
+    say("The link's view cannot be read.");
+  }
 }
 
 // A part lights up under the pointer, a click selects it here and in the table, and a drag moves the joint that carries it.
@@ -348,12 +555,39 @@ function select(part) {
   for (const button of document.querySelectorAll("[data-part]")) {
     const row = button.closest("tr"), own = Number(button.dataset.part) === selected;
     row.classList.toggle("selected", own);
-    if (own) row.scrollIntoView({ block: "nearest" });
+    button.setAttribute("aria-pressed", String(own));
+    if (own && !narrow.matches) row.scrollIntoView({ block: "nearest" });
   }
-  if (selected < 0) return say("");
-  const { name, material } = model.parts[selected];
-  const joints = mechanism.joints.filter((joint) => joint.parent === selected || joint.child === selected).map((joint) => `${joint.name} (${joint.type})`);
-  say([name, material, joints.length ? `joints: ${joints.join(", ")}` : ""].filter(Boolean).join(", "));
+  refreshCard();
+  say(selected < 0 ? "" : `${model.parts[selected].name} is selected.`);
+}
+
+// What is known about the selected part.
+function refreshCard() {
+  const card = $("card");
+  card.hidden = selected < 0;
+  if (selected < 0) return card.replaceChildren();
+  const { name, material, mass, size, facts } = model.parts[selected];
+  const joints = mechanism.joints.filter((joint) => joint.parent === selected || joint.child === selected);
+  const listed = [
+    ["material", material], ["mass", mass === null ? "unknown" : `${mass.toPrecision(4)} kg`],
+    ["size", size ? `${size.map((value) => value.toFixed(1)).join(" × ")} mm` : ""],
+    ["joints", joints.map((joint) => `${joint.name} (${joint.type})`).join(", ") || "none"],
+    ...facts,
+  ];
+  const rows = listed.filter(([, value]) => value).flatMap(([key, value]) => [element("dt", { textContent: key }), element("dd", { textContent: value })]);
+  const visible = view.groups[selected].visible, alone = view.focused?.size === 1 && view.focused.has(selected);
+  const hide = element("button", { type: "button", id: "card-hide", textContent: visible ? "hide" : "show" });
+  hide.addEventListener("click", () => show(selected, !visible));
+  const only = element("button", { type: "button", id: "card-alone", textContent: alone ? "show all" : "alone" });
+  only.addEventListener("click", () => {
+    view.focus(alone ? [] : [selected]);
+    $("unfocus").hidden = alone;
+    refreshCard();
+  });
+  const close = element("button", { type: "button", textContent: "✕", "aria-label": "deselect" });
+  close.addEventListener("click", () => select(selected));
+  card.replaceChildren(element("div", { className: "card-head" }, element("h2", { textContent: name }), only, hide, close), element("dl", {}, ...rows));
 }
 
 // The drivers on the way from a part to the ground, the nearest first; with loops, all others after them.
@@ -421,8 +655,9 @@ function follow({ hit, driver }, clientX, clientY) {
 const KEYS = {
   1: () => view.look("iso"), 2: () => view.look("front"), 3: () => view.look("right"), 4: () => view.look("top"),
   5: () => view.look("back"), 6: () => view.look("left"), 7: () => view.look("bottom"),
+  " ": () => $("play").click(), o: () => $("tool-parallel").click(), h: () => selected >= 0 && show(selected, !view.groups[selected].visible),
   f: () => view.look("iso"), r: reset, a: () => $("tool-axes").click(), n: () => $("tool-names").click(), m: () => $("tool-measure").click(),
-  Escape: () => (measuring.on ? $("tool-measure").click() : unfocus()),
+  Escape: () => (measuring.on ? $("tool-measure").click() : selected >= 0 ? select(selected) : unfocus()),
   "+": () => view.zoom(0.85), "-": () => view.zoom(1 / 0.85),
 };
 const TURNS = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] };
@@ -430,7 +665,7 @@ const TURNS = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], A
 function buildKeys() {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !view) return;
-    const typing = event.target.matches("input, select, textarea");
+    const typing = event.target.matches("input, select, textarea") || (event.key === " " && event.target.matches("button, summary, a"));
     if (event.target === view.canvas && event.key in TURNS) view.turn(...TURNS[event.key]);
     else if (!typing && event.key in KEYS) KEYS[event.key]();
     else return;
@@ -514,35 +749,27 @@ function begin() {
   }
   buildTables();
   update();
-  if (model.watch) watch();
-  window.articad = { model, set, q: named_q, poses, drawn, view, reset, directions: Object.keys(DIRECTIONS) };
+  if (view) {
+    if (model.watch) {
+      watch(model.watch, {
+        kept: () => ({ ...state(), axes: view.axes.visible, named, theme: document.documentElement.dataset.theme ?? null, selected: mechanism.parts[selected] ?? null }),
+        restore: (kept) => {
+          restore(kept);
+          if (kept.axes) $("tool-axes").click();
+          if (kept.named) $("tool-names").click();
+          if (kept.theme) document.documentElement.dataset.theme = kept.theme;
+          if (mechanism.parts.includes(kept.selected)) select(mechanism.parts.indexOf(kept.selected));
+        },
+      });
+    }
+    restoreLink();
+  }
+  window.articad = { model, set, q: named_q, poses, drawn, view, reset, state, picture, directions: Object.keys(DIRECTIONS) };
   requestAnimationFrame(() => {
     view?.draw();
     window.articad.firstFrame = performance.now();
     document.documentElement.dataset.ready = "";
   });
-}
-
-// `articad watch` serves the page and says when it has changed; pose and view are kept.
-function watch() {
-  const kept = sessionStorage.getItem("articad");
-  if (kept && view) {
-    const { q, camera, target } = JSON.parse(kept);
-    sessionStorage.removeItem("articad");
-    set(q);
-    view.camera.position.fromArray(camera);
-    view.controls.target.fromArray(target);
-    view.controls.update();
-  }
-  setInterval(async () => {
-    const answer = await fetch("version").catch(() => null);
-    if (!answer?.ok) return;
-    const { version, message } = await answer.json();
-    if (message) say(message);
-    if (version === model.watch) return;
-    if (view) sessionStorage.setItem("articad", JSON.stringify({ q: named_q(), camera: view.camera.position.toArray(), target: view.controls.target.toArray() }));
-    location.reload();
-  }, 700);
 }
 
 begin();

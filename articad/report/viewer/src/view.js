@@ -1,17 +1,26 @@
 // What is drawn: one group per part, moved as a whole; frames when something has changed and at no other time.
+// Frames in motion are drawn in as many pixels as the machine manages; one frame of full quality follows when all is still.
 import {
-  AmbientLight, BackSide, Box3, BufferAttribute, BufferGeometry, Color, ConeGeometry, DirectionalLight, DoubleSide, FrontSide,
-  Group, HemisphereLight, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial,
-  PerspectiveCamera, Plane, Raycaster, Scene, Sphere, Vector2, Vector3, WebGLRenderer,
+  Box3, BufferAttribute, BufferGeometry, Color, ConeGeometry, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh,
+  MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, Plane, Raycaster, Scene, Sphere, SphereGeometry, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { fromPose, multiply } from "./kinematics.js";
+import { lookOf, refreshLook, sharedLook } from "./look.js";
+import { GroundShadow, MARKS, Occlusion, PARTS } from "./shade.js";
+import { featureAt } from "./features.js";
 
-const INK = 0x20242a;
-const JOINT = 0x1f8ae0;
+const INK = 0x20242a, CHALK = 0x737a84; // edges, and edges of black parts
+const EDGE = 0.5; // opacity of edges
+const JOINT = 0x1f8ae0, MARK = 0xe5383b;
 const AXES = [0xd33a3a, 0x2a9b48, 0x3a66d8];
 const FADED = 0.12; // opacity of parts that a finding is not about
 const FIELD = 32; // degrees
+const FILLED = 0.84; // of the picture's height or width, by the model
+const STILL = 140; // ms without a change until the frame of full quality
+const SLOW = 48, QUICK = 26; // ms of a frame: draw fewer pixels, or more
+const SCALES = [1, 0.75, 0.55, 0.4, 0.3]; // of the pixels in each direction, while something moves
+const NEAR_EDGE = 8, NEAR_CORNER = 12; // pixels within which an edge or a corner is caught
 export const DIRECTIONS = {
   iso: [1, -1.4, 0.9], front: [0, -1, 0], back: [0, 1, 0], left: [-1, 0, 0], right: [1, 0, 0], top: [0, -1e-4, 1], bottom: [0, -1e-4, -1],
 };
@@ -34,6 +43,7 @@ function geometryOf(mesh) {
   const faceOf = new Int32Array(points.length / 3).fill(-1);
   const source = [];
   const index = new Uint32Array(triangles.length);
+  const starts = [0];
   for (let face = 0, at = 0; face < counts.length; face++) {
     for (const end = at + 3 * counts[face]; at < end; at++) {
       const vertex = triangles[at];
@@ -44,6 +54,7 @@ function geometryOf(mesh) {
       }
       index[at] = copyOf[vertex];
     }
+    starts.push(at / 3);
   }
   const positions = new Float32Array(source.length * 3);
   source.forEach((vertex, copy) => positions.set(points.subarray(3 * vertex, 3 * vertex + 3), 3 * copy));
@@ -54,7 +65,7 @@ function geometryOf(mesh) {
   const edges = new BufferGeometry();
   edges.setAttribute("position", new BufferAttribute(points, 3));
   edges.setIndex(new BufferAttribute(indices(mesh.edges, mesh.wide), 1));
-  return { geometry, edges, points, triangles };
+  return { geometry, edges, points, triangles, starts };
 }
 
 const matrixOf = (T) => new Matrix4().set(...T, 0, 0, 0, 1);
@@ -66,26 +77,35 @@ export class View {
     this.changed = changed; // told after each frame: labels follow
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: false });
     this.renderer.localClippingEnabled = true;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.ratio = Math.min(window.devicePixelRatio, 2);
+    this.renderer.setPixelRatio(this.ratio);
     this.scene = new Scene();
-    this.camera = new PerspectiveCamera(FIELD, 1, 1, 1e5);
-    this.camera.up.set(0, 0, 1);
-    const key = new DirectionalLight(0xffffff, 2.0);
-    key.position.set(-0.4, 0.6, 1);
-    this.camera.add(key);
-    this.scene.add(this.camera, new HemisphereLight(0xffffff, 0x9a9488, 1.1), new AmbientLight(0xffffff, 0.35));
-    this.plane = new Plane(new Vector3(-1, 0, 0), 0);
-    this.cutting = false;
+    this.perspective = new PerspectiveCamera(FIELD, 1, 1, 1e5);
+    this.parallel = new OrthographicCamera();
+    for (const camera of [this.perspective, this.parallel]) {
+      camera.up.set(0, 0, 1);
+      camera.layers.enable(MARKS);
+    }
+    this.camera = this.perspective;
+    this.shared = sharedLook();
+    this.planes = [];
+    this.sections = { x: null, y: null, z: null };
     this.explosion = 0;
     this.focused = null;
     this.hovered = this.selected = -1;
     this.frames = 0;
+    this.level = 0; // index in SCALES
+    this.interval = 0; // ms between frames, smoothed
+    this.settled = false;
     this.#buildParts();
     this.#buildJoints();
+    this.#buildOverlaps();
     this.markers = new Group();
     this.scene.add(this.markers);
+    this.occlusion = new Occlusion();
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
+    this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.ask());
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
   }
@@ -93,29 +113,27 @@ export class View {
   #buildParts() {
     const { meshes, parts } = this.mechanism.model;
     this.meshes = meshes.map(geometryOf);
-    this.groups = parts.map((part) => {
+    this.groups = parts.map((part, index) => {
       const group = new Group();
       group.matrixAutoUpdate = false;
       group.name = part.name;
-      const color = new Color(part.color);
-      const line = new LineBasicMaterial({ color: INK, transparent: true, opacity: 0.75 });
-      group.userData = { line, materials: [], caps: [] };
+      const { r, g, b } = new Color(part.color);
+      const line = new LineBasicMaterial({ color: 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.03 ? CHALK : INK, transparent: true, opacity: EDGE });
+      group.userData = { line, materials: [] };
       for (const shape of part.shapes) {
         const { geometry, edges } = this.meshes[shape.mesh];
-        const own = shape.color ? new Color(shape.color) : color;
-        const material = new MeshLambertMaterial({ color: own, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+        const material = lookOf(shape.color ?? part.color, part.finish, this.shared);
+        refreshLook(material, { faded: false, opacity: 1, cutting: false });
         const surface = new Mesh(geometry, material);
-        const cap = new Mesh(geometry, new MeshBasicMaterial({ color: own.clone().lerp(new Color(0xffffff), 0.35), side: BackSide }));
-        cap.visible = false;
         const outline = new LineSegments(edges, line);
-        for (const object of [surface, cap, outline]) {
+        outline.layers.set(MARKS);
+        for (const object of [surface, outline]) {
           object.matrixAutoUpdate = false;
           object.matrix.copy(matrixOf(fromPose(shape.pose)));
           group.add(object);
         }
-        surface.userData.part = parts.indexOf(part);
+        surface.userData = { part: index, mesh: shape.mesh };
         group.userData.materials.push(material);
-        group.userData.caps.push(cap);
       }
       this.scene.add(group);
       return group;
@@ -140,64 +158,102 @@ export class View {
         head.position.z = 1;
         group.add(head);
       }
-      group.traverse((object) => (object.renderOrder = 5));
+      group.traverse((object) => {
+        object.renderOrder = 5;
+        object.layers.set(MARKS);
+      });
       this.axes.add(group);
       return group;
     });
     this.scene.add(this.axes);
   }
 
+  // Where parts overlap: red, over everything, in the pose in which it was found.
+  #buildOverlaps() {
+    this.overlaps = (this.mechanism.model.overlaps ?? []).map((overlap) => {
+      const { geometry } = geometryOf(overlap.mesh);
+      const solid = new Mesh(geometry, new MeshBasicMaterial({ color: MARK, depthTest: false, transparent: true, opacity: 0.85, side: DoubleSide }));
+      solid.layers.set(MARKS);
+      solid.renderOrder = 4;
+      solid.visible = false;
+      this.scene.add(solid);
+      return { ...overlap, solid };
+    });
+  }
+
   #line(points, color) {
     const geometry = new BufferGeometry().setFromPoints(points.map((point) => new Vector3(...point)));
-    return new LineSegments(geometry, new LineBasicMaterial({ color, depthTest: false, transparent: true }));
+    const line = new LineSegments(geometry, new LineBasicMaterial({ color, depthTest: false, transparent: true }));
+    line.layers.set(MARKS);
+    return line;
+  }
+
+  // By how much each part is moved from its place when exploded: out of the part that carries it, with all that it carries.
+  #offsets(poses) {
+    const { parts, tree } = this.mechanism.model;
+    const offsets = parts.map(() => [0, 0, 0]);
+    if (!this.explosion) return offsets;
+    for (const { from, to } of tree) {
+      const way = parts[to].explode, T = poses[from];
+      for (let k = 0; k < 3; k++) {
+        offsets[to][k] = offsets[from][k] + this.explosion * (T[4 * k] * way[0] + T[4 * k + 1] * way[1] + T[4 * k + 2] * way[2]);
+      }
+    }
+    return offsets;
   }
 
   // Put every part where it belongs.
   place(poses) {
     this.poses = poses;
-    const middle = this.middle ?? new Vector3();
+    const offsets = this.#offsets(poses);
     poses.forEach((T, index) => {
       const group = this.groups[index];
       group.matrix.copy(matrixOf(T));
-      if (this.explosion && this.outward) {
-        const way = this.outward[index];
-        for (let k = 0; k < 3; k++) group.matrix.elements[12 + k] += this.explosion * (way[k] - middle.getComponent(k));
-      }
+      for (let k = 0; k < 3; k++) group.matrix.elements[12 + k] += offsets[index][k];
       group.matrixWorldNeedsUpdate = true;
     });
     const scale = new Matrix4().makeScale(this.size * 0.11, this.size * 0.11, this.size * 0.11);
     this.mechanism.joints.forEach((joint, index) => {
       this.triads[index].matrix.copy(matrixOf(multiply(poses[joint.parent], joint.Cp))).multiply(scale);
+      for (let k = 0; k < 3; k++) this.triads[index].matrix.elements[12 + k] += offsets[joint.parent][k];
       this.triads[index].matrixWorldNeedsUpdate = true;
     });
+    this.stale = true;
     this.ask();
   }
 
-  // Measure the model at rest: its middle, its size, and which way each part goes when exploded.
+  // Show the overlaps that were found in the present pose.
+  showOverlaps(here) {
+    for (const overlap of this.overlaps) overlap.solid.visible = !this.explosion && here(overlap.pose);
+    this.ask();
+  }
+
+  // Measure the model at rest: its middle and its size.
   measure(poses) {
     this.size = 1;
     this.place(poses);
     this.scene.updateMatrixWorld(true);
     const box = new Box3();
+    this.atRest = poses;
+    this.partBoxes = this.groups.map((group) => new Box3().expandByObject(group)).filter((own, index) => !own.isEmpty() || own.set(new Vector3(...poses[index].filter((_, k) => k % 4 === 3)), new Vector3(...poses[index].filter((_, k) => k % 4 === 3))));
     for (const group of this.groups) box.expandByObject(group);
     if (box.isEmpty()) box.set(new Vector3(-50, -50, -50), new Vector3(50, 50, 50));
     this.box = box;
     this.sphere = box.getBoundingSphere(new Sphere());
     this.size = this.sphere.radius * 2;
     this.middle = box.getCenter(new Vector3());
-    this.outward = this.groups.map((group) => {
-      const own = new Box3().expandByObject(group);
-      return (own.isEmpty() ? this.middle : own.getCenter(new Vector3())).toArray();
-    });
-    this.farthest = Math.max(0, ...this.outward.map((way) => this.middle.distanceTo(new Vector3(...way))));
+    this.explosion = 1;
+    this.farthest = Math.max(0, ...this.#offsets(poses).map((offset) => Math.hypot(...offset)));
+    this.explosion = 0;
+    this.shadow = new GroundShadow(this.scene, box, this.size);
     this.place(poses);
   }
 
-  // Move parts away from the middle by so many times their distance from it; the camera steps back to keep them in sight.
+  // Pull parts out of each other; at 1 none is inside another. The camera steps back to keep them in sight.
   explode(amount) {
-    const before = this.#reach();
+    const way = this.camera.position.clone().sub(this.controls.target).normalize(), before = this.#framed(way);
     this.explosion = amount;
-    this.zoom(this.#reach() / before);
+    this.zoom(this.#framed(way) / before);
     this.place(this.poses);
   }
 
@@ -208,15 +264,84 @@ export class View {
 
   look(name) {
     const way = new Vector3(...DIRECTIONS[name]).normalize();
-    this.controls.target.copy(this.sphere.center);
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = (this.#reach() * 1.08) / Math.sin((FIELD * Math.PI) / 360) / narrow;
-    this.camera.position.copy(this.sphere.center).addScaledVector(way, distance);
-    this.camera.near = distance / 200;
-    this.camera.far = distance * 20;
-    this.camera.updateProjectionMatrix();
+    this.#stand(this.middle, way, this.#framed(way));
+  }
+
+  // Look at a place of the present picture from where the camera is.
+  fly(center, radius) {
+    const way = this.camera.position.clone().sub(this.controls.target).normalize();
+    this.#stand(center, way, (Math.max(radius * 3, 0.06 * this.size) * 1.08) / Math.sin((FIELD * Math.PI) / 360) / Math.min(1, this.perspective.aspect));
+  }
+
+  // The distance from which the box of the model fills the picture, with room for the tools at its edges.
+  #framed(way) {
+    const right = new Vector3(0, 0, 1).cross(way).normalize(), up = way.clone().cross(right);
+    const half = this.#halfSize();
+    const slope = Math.tan((FIELD * Math.PI) / 360) * FILLED;
+    let distance = 0;
+    for (let k = 0; k < 8; k++) {
+      const corner = new Vector3(k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z);
+      const least = Math.max(Math.abs(corner.dot(right)) / this.perspective.aspect, Math.abs(corner.dot(up))) / slope;
+      distance = Math.max(distance, least + corner.dot(way));
+    }
+    return distance;
+  }
+
+  // Half the size of a box around the model's middle that holds every part at rest, exploded as it is.
+  #halfSize() {
+    const half = this.box.getSize(new Vector3()).multiplyScalar(0.5);
+    if (!this.explosion) return half;
+    const offsets = this.#offsets(this.atRest);
+    this.partBoxes.forEach(({ min, max }, index) => {
+      for (let k = 0; k < 3; k++) {
+        const middle = this.middle.getComponent(k), off = offsets[index][k];
+        half.setComponent(k, Math.max(half.getComponent(k), max.getComponent(k) + off - middle, middle - min.getComponent(k) - off));
+      }
+    });
+    return half;
+  }
+
+  #stand(center, way, distance) {
+    this.controls.target.copy(center);
+    this.distance = distance;
+    this.camera.position.copy(center).addScaledVector(way, this.distance);
+    this.parallel.zoom = 1;
+    this.#lens();
     this.controls.update();
+    this.camera.updateMatrixWorld();
     this.ask();
+  }
+
+  // Parallel rays, or rays from a point; the model keeps its size on the screen.
+  project(parallel) {
+    if (parallel === (this.camera === this.parallel)) return;
+    const from = this.camera, to = parallel ? this.parallel : this.perspective;
+    const way = from.position.clone().sub(this.controls.target);
+    if (parallel) {
+      this.distance = way.length();
+      this.parallel.zoom = 1;
+    } else way.setLength(this.distance / this.parallel.zoom);
+    to.position.copy(this.controls.target).add(way);
+    this.camera = this.controls.object = to;
+    this.shared.flat_view.value = parallel;
+    this.#lens();
+    this.controls.update();
+    this.camera.updateMatrixWorld();
+    this.ask();
+  }
+
+  // What the camera sees of the way before it: near and far follow the model.
+  #lens() {
+    const away = this.camera.position.distanceTo(this.sphere.center), reach = 3 * this.#reach();
+    const aspect = this.perspective.aspect;
+    if (this.camera === this.parallel) {
+      const half = this.distance * Math.tan((FIELD * Math.PI) / 360);
+      Object.assign(this.parallel, { left: -half * aspect, right: half * aspect, top: half, bottom: -half, near: away - 2 * reach, far: away + 2 * reach });
+    } else {
+      this.perspective.near = Math.max(away - reach, away / 400, this.size / 2000);
+      this.perspective.far = away + 2 * reach;
+    }
+    this.camera.updateProjectionMatrix();
   }
 
   turn(across, up) {
@@ -227,56 +352,61 @@ export class View {
     offset.set(Math.cos(azimuth) * Math.cos(height), Math.sin(azimuth) * Math.cos(height), Math.sin(height)).multiplyScalar(radius);
     this.camera.position.copy(this.controls.target).add(offset);
     this.controls.update();
+    this.camera.updateMatrixWorld();
     this.ask();
   }
 
   zoom(factor) {
-    this.camera.position.sub(this.controls.target).multiplyScalar(factor).add(this.controls.target);
+    if (this.camera === this.parallel) {
+      this.parallel.zoom /= factor;
+      this.#lens();
+    } else this.camera.position.sub(this.controls.target).multiplyScalar(factor).add(this.controls.target);
     this.controls.update();
+    this.camera.updateMatrixWorld();
     this.ask();
   }
 
-  section(axis, share, flipped) {
-    this.cutting = axis >= 0;
-    if (this.cutting) {
-      const sign = flipped ? 1 : -1;
+  // Cut by up to three planes: each {share of the box, other side} or null.
+  section(sections) {
+    this.sections = sections;
+    this.planes = Object.entries(sections).filter(([, cut]) => cut).map(([name, { share, flipped }]) => {
+      const axis = "xyz".indexOf(name), sign = (name === "y") === !flipped ? 1 : -1; // the half before the first view goes
       const at = this.box.min.getComponent(axis) + share * (this.box.max.getComponent(axis) - this.box.min.getComponent(axis));
-      this.plane.normal.set(0, 0, 0).setComponent(axis, sign);
-      this.plane.constant = -sign * at;
-    }
-    const planes = this.cutting ? [this.plane] : [];
+      return new Plane(new Vector3().setComponent(axis, sign), -sign * at);
+    });
     for (const { userData } of this.groups) {
-      userData.line.clippingPlanes = planes;
-      for (const material of userData.materials) {
-        material.clippingPlanes = planes;
-        material.side = this.cutting ? FrontSide : DoubleSide;
-        material.needsUpdate = true;
-      }
-      for (const cap of userData.caps) {
-        cap.visible = this.cutting;
-        cap.material.clippingPlanes = planes;
-      }
+      userData.line.clippingPlanes = this.planes;
+      for (const material of userData.materials) material.clippingPlanes = this.planes; // our shader cuts by itself
     }
-    this.ask();
+    this.#refresh();
+    this.stale = true;
+  }
+
+  get cutting() {
+    return this.planes.length > 0;
   }
 
   show(index, visible) {
     this.groups[index].visible = visible;
+    this.stale = true;
     this.ask();
   }
 
   // Fade all parts but these; none fades nothing.
   focus(parts) {
     this.focused = parts?.length ? new Set(parts) : null;
+    this.#refresh();
+  }
+
+  #faded(index) {
+    return this.focused !== null && !this.focused.has(index);
+  }
+
+  #refresh() {
     this.groups.forEach((group, index) => {
-      const faded = this.focused !== null && !this.focused.has(index);
-      for (const material of group.userData.materials) {
-        material.transparent = faded;
-        material.opacity = faded ? FADED : 1;
-        material.depthWrite = !faded;
-        material.needsUpdate = true;
-      }
-      group.userData.line.opacity = faded ? 0.18 : 0.75;
+      const faded = this.#faded(index);
+      for (const material of group.userData.materials) refreshLook(material, { faded, opacity: FADED, cutting: this.cutting });
+      group.userData.edge = faded ? 0.15 : EDGE;
     });
     this.ask();
   }
@@ -295,7 +425,7 @@ export class View {
 
   #glow() {
     this.groups.forEach((group, index) => {
-      const strength = index === this.selected ? 0.4 : index === this.hovered ? 0.18 : 0;
+      const strength = index === this.selected ? 0.4 : index === this.hovered ? 0.14 : 0;
       for (const material of group.userData.materials) material.emissive.setHex(JOINT).multiplyScalar(strength);
     });
     this.ask();
@@ -303,34 +433,34 @@ export class View {
 
   // The matrix of a part in given poses, exploded as it is drawn.
   placed(index, poses) {
-    const matrix = matrixOf(poses[index]);
-    if (this.explosion && this.outward) {
-      for (let k = 0; k < 3; k++) matrix.elements[12 + k] += this.explosion * (this.outward[index][k] - this.middle.getComponent(k));
-    }
+    const matrix = matrixOf(poses[index]), offset = this.#offsets(poses)[index];
+    for (let k = 0; k < 3; k++) matrix.elements[12 + k] += offset[k];
     return matrix;
   }
 
-  // The point of a part under the pointer, at a corner where one is near.
+  // What is under the pointer: exactly there, or a corner, an edge or a face of the part.
   pick(clientX, clientY, { exact = false } = {}) {
     const bounds = this.canvas.getBoundingClientRect();
     const at = new Vector2(((clientX - bounds.left) / bounds.width) * 2 - 1, 1 - ((clientY - bounds.top) / bounds.height) * 2);
     const ray = new Raycaster();
+    ray.layers.set(PARTS);
+    this.camera.updateMatrixWorld();
     ray.setFromCamera(at, this.camera);
-    const surfaces = this.groups.filter((group) => group.visible).flatMap((group) => group.children.filter((o) => o.userData.part !== undefined));
-    const hit = ray.intersectObjects(surfaces, false).find(({ point }) => !this.cutting || this.plane.distanceToPoint(point) >= 0);
+    const surfaces = this.groups.filter((group, index) => group.visible && !this.#faded(index)).flatMap((group) => group.children.filter((o) => o.userData.part !== undefined));
+    const hit = ray.intersectObjects(surfaces, false).find(({ point }) => this.planes.every((plane) => plane.distanceToPoint(point) >= 0));
     if (!hit) return null;
-    const own = this.groups[hit.object.userData.part];
-    if (exact) return { part: hit.object.userData.part, local: own.worldToLocal(hit.point.clone()) };
-    const corners = [hit.face.a, hit.face.b, hit.face.c].map((corner) =>
-      new Vector3().fromBufferAttribute(hit.object.geometry.attributes.position, corner).applyMatrix4(hit.object.matrixWorld));
+    const { part, mesh } = hit.object.userData;
+    const group = this.groups[part];
+    if (exact) return { part, local: group.worldToLocal(hit.point.clone()) };
     const pixels = (point) => {
-      const seen = point.clone().project(this.camera);
-      return Math.hypot((seen.x - at.x) * bounds.width, (seen.y - at.y) * bounds.height) / 2;
+      const seen = point.clone().applyMatrix4(hit.object.matrixWorld).project(this.camera);
+      return [(seen.x - at.x) * bounds.width / 2, (seen.y - at.y) * bounds.height / 2];
     };
-    const nearest = corners.sort((a, b) => pixels(a) - pixels(b))[0];
-    const point = pixels(nearest) < 12 ? nearest : hit.point;
-    const group = this.groups[hit.object.userData.part];
-    return { part: hit.object.userData.part, local: group.worldToLocal(point.clone()) };
+    const feature = featureAt(this.meshes[mesh], hit.faceIndex, hit.object.worldToLocal(hit.point.clone()), pixels, { corner: NEAR_CORNER, edge: NEAR_EDGE });
+    const moved = (point) => point.applyMatrix4(hit.object.matrix); // into the part's frame
+    moved(feature.local);
+    if (feature.direction) feature.direction.transformDirection(hit.object.matrix);
+    return { part, ...feature };
   }
 
   worldOf({ part, local }) {
@@ -338,17 +468,23 @@ export class View {
     return this.groups[part].localToWorld(local.clone());
   }
 
-  mark(points) {
+  directionOf({ part, direction }) {
+    this.groups[part].updateMatrixWorld(true);
+    return direction.clone().transformDirection(this.groups[part].matrixWorld);
+  }
+
+  // Dots, and lines between two points each.
+  mark(points, lines = []) {
     this.markers.clear();
-    if (points.length) {
-      const radius = this.size * 0.006;
-      for (const point of points) {
-        const dot = new Mesh(new ConeGeometry(radius, radius * 2, 8), new MeshBasicMaterial({ color: 0xe5383b, depthTest: false, transparent: true }));
-        dot.position.copy(point);
-        this.markers.add(dot);
-      }
-      if (points.length === 2) this.markers.add(this.#line(points.map((point) => point.toArray()), 0xe5383b));
+    const radius = this.size * 0.004;
+    for (const point of points) {
+      const dot = new Mesh(new SphereGeometry(radius, 12, 8), new MeshBasicMaterial({ color: MARK, depthTest: false, transparent: true }));
+      dot.position.copy(point);
+      dot.layers.set(MARKS);
+      this.markers.add(dot);
     }
+    for (const line of lines) this.markers.add(this.#line(line.map((point) => point.toArray()), MARK));
+    this.markers.traverse((object) => (object.renderOrder = 6));
     this.ask();
   }
 
@@ -362,26 +498,98 @@ export class View {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (!width || !height) return;
     this.renderer.setSize(width, height, false);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.perspective.aspect = width / height;
+    if (this.sphere) this.#lens();
     this.draw();
   }
 
   ask() {
     if (this.asked) return;
     this.asked = true;
-    requestAnimationFrame(() => this.draw());
+    requestAnimationFrame((now) => this.#moving(now));
+  }
+
+  // A frame in motion. Frames that follow each other closely tell how many pixels the machine can draw.
+  #moving(now) {
+    const since = now - (this.before ?? 0);
+    this.before = now;
+    if (since < 250) {
+      this.interval = this.interval ? 0.7 * this.interval + 0.3 * since : since;
+      this.steady = (this.steady ?? 0) + 1;
+      if (this.steady > 3 && this.interval > SLOW && this.level < SCALES.length - 1) this.#rescale(this.level + (this.interval > 2 * SLOW ? 2 : 1));
+      else if (this.steady > 20 && this.interval < QUICK && this.level > 0) this.#rescale(this.level - 1);
+    } else this.steady = this.interval = 0;
+    this.draw();
+  }
+
+  #rescale(level) {
+    this.level = Math.min(level, SCALES.length - 1);
+    this.steady = 0;
+  }
+
+  #resolution(scale) {
+    if (this.renderer.getPixelRatio() !== this.ratio * scale) this.renderer.setPixelRatio(this.ratio * scale);
+    this.shared.hatch.value = [1.2 * this.ratio * scale, 7 * this.ratio * scale];
+    for (const { userData } of this.groups) userData.line.opacity = (userData.edge ?? EDGE) * (0.3 + 0.7 * scale);
   }
 
   draw() {
-    this.asked = false;
-    this.renderer.render(this.scene, this.camera);
+    this.asked = this.settled = false;
+    this.#resolution(SCALES[this.level]);
+    this.#render({ shadow: this.frames % 3 === 2 }); // not in the first frame
     this.frames += 1;
     this.changed();
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => requestAnimationFrame(() => this.asked || this.finish()), STILL);
   }
 
-  picture() {
-    this.renderer.render(this.scene, this.camera); // a picture can only be taken in the moment it is drawn
-    return this.canvas.toDataURL("image/png");
+  // The frame of full quality.
+  finish() {
+    this.#resolution(1);
+    this.#render({ shadow: true, fine: true });
+    this.settled = true;
+  }
+
+  // Hide what casts no shadow; the function that is returned shows it again.
+  #onlySolid = () => {
+    const hidden = this.groups.filter((group, index) => group.visible && (this.#faded(index) || group.userData.materials.some((material) => material.clear)));
+    for (const group of hidden) group.visible = false;
+    return () => hidden.forEach((group) => (group.visible = true));
+  };
+
+  #render({ shadow = false, fine = false } = {}) {
+    this.#lens();
+    this.camera.updateMatrixWorld();
+    const { planes, cuts, up } = this.shared;
+    up.value.set(0, 0, 1).transformDirection(this.camera.matrixWorldInverse);
+    cuts.value = this.planes.length;
+    this.planes.forEach((plane, k) => {
+      const seen = plane.clone().applyMatrix4(this.camera.matrixWorldInverse);
+      planes.value[k].set(...seen.normal.toArray(), seen.constant);
+    });
+    if (this.shadow) {
+      const before = this.camera.position.z > this.shadow.level;
+      this.shadow.ground.visible = before && !this.explosion && !this.cutting;
+      this.shadow.ground.material.uniforms.strength.value = this.focused ? 0.3 : 1;
+      if (this.shadow.ground.visible && this.stale && shadow) {
+        this.shadow.draw(this.renderer, this.scene, this.#onlySolid);
+        this.stale = false;
+      }
+    }
+    this.renderer.setRenderTarget(null);
+    this.renderer.render(this.scene, this.camera);
+    if (fine && !this.cutting) this.occlusion.draw(this.renderer, this.scene, this.camera, { reach: 0.07 * this.size, planes: this.planes, show: this.#onlySolid });
+  }
+
+  // Draw in full quality, and at once hand the picture to a function: it is gone after that. Width in pixels, or as on the screen.
+  picture(paint, width = null) {
+    const { clientWidth, clientHeight } = this.canvas;
+    const ratio = this.ratio;
+    if (width) this.ratio = width / clientWidth;
+    this.finish();
+    const made = paint(this.canvas, Math.round(clientWidth * this.ratio), Math.round(clientHeight * this.ratio));
+    this.ratio = ratio;
+    this.ask();
+    return made;
   }
 }

@@ -1,0 +1,113 @@
+// How materials answer light: the formulas of articad/render/studio.py, so that the page and the pictures look alike.
+// Light is linear. Lamps stand still relative to the camera: a key lamp at the upper left, a fill lamp at the right, a rim lamp behind.
+import { Color, DoubleSide, ShaderMaterial, Vector3, Vector4 } from "three";
+
+const vertexShader = `
+varying vec3 vNormal;
+varying vec3 vPlace; // in view space
+void main() {
+  vec4 place = modelViewMatrix * vec4(position, 1.0);
+  vNormal = normalMatrix * normal;
+  vPlace = place.xyz;
+  gl_Position = projectionMatrix * place;
+}`;
+
+const fragmentShader = `
+uniform vec3 base;
+uniform vec3 glow;
+uniform float metal, rough, gloss, opaque, fade;
+uniform vec3 up; // the ground's z in view space
+uniform bool flat_view; // orthographic: all rays are parallel
+#ifdef CUT
+uniform vec4 planes[3];
+uniform int cuts;
+uniform mat4 projectionMatrix;
+uniform vec2 hatch; // width of a line and distance of two, pixels
+#endif
+varying vec3 vNormal;
+varying vec3 vPlace;
+
+vec3 bent(vec3 light) { // unchanged up to 0.7, then bent so that 2 is almost white
+  vec3 above = max(light - 0.7, 0.0);
+  return min(light, 0.7) + 0.3 * (1.0 - exp(-above / 0.3));
+}
+vec3 encoded(vec3 c) { // IEC 61966-2-1
+  return mix(c * 12.92, 1.055 * pow(max(c, 0.0031308), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}
+
+void main() {
+  vec3 normal = normalize(vNormal) * (gl_FrontFacing ? 1.0 : -1.0);
+  vec3 eye = flat_view ? vec3(0.0, 0.0, 1.0) : normalize(-vPlace);
+#ifdef CUT
+  // A ray that meets the inner side of a surface first has entered the part through a plane: the cut, drawn there and hatched.
+  vec3 origin = flat_view ? vec3(vPlace.xy, 0.0) : vec3(0.0);
+  float entry = -1e30;
+  for (int k = 0; k < 3; k++) {
+    if (k >= cuts) break;
+    if (dot(planes[k].xyz, vPlace) + planes[k].w < 0.0) discard;
+    float slope = dot(planes[k].xyz, -eye);
+    if (slope > 0.0) entry = max(entry, -(dot(planes[k].xyz, origin) + planes[k].w) / slope);
+  }
+  gl_FragDepth = gl_FragCoord.z;
+  if (!gl_FrontFacing) {
+    vec4 clip = projectionMatrix * vec4(origin - eye * entry, 1.0);
+    gl_FragDepth = clamp(clip.z / clip.w * 0.5 + 0.5, 0.0, 1.0);
+    float line = mod(gl_FragCoord.x + gl_FragCoord.y, hatch.y) < hatch.x ? 0.45 : 1.0;
+    gl_FragColor = vec4(encoded(bent(mix(base, vec3(0.75), 0.25) * line + glow)), 1.0) * fade;
+    return;
+  }
+#endif
+  const vec3 key = vec3(-0.4482, 0.6519, 0.6112), fill = vec3(0.8916, 0.0991, 0.4458), rim = vec3(0.2693, 0.7539, -0.5924);
+  float height = dot(normal, up);
+  float ambient = 0.40 + 0.14 * height;
+  float lamps = 0.74 * max(dot(normal, key), 0.0) + 0.14 * max(dot(normal, fill), 0.0);
+  vec3 diffuse = base * (ambient + lamps);
+  float facing = clamp(dot(normal, eye), 0.0, 1.0);
+  vec3 mirrored = 2.0 * dot(normal, eye) * normal - eye;
+  float spread = clamp(rough, 0.05, 1.0);
+  float sharp = 2.0 / (0.02 + pow(spread, 1.6) * 0.55), soft = 1.0 - 0.62 * spread;
+  float reflected = 0.30 + 0.34 * tanh(dot(mirrored, up) / (0.25 + spread)) + 0.12 * (1.0 - spread);
+  reflected += soft * (1.5 * exp(sharp * (dot(mirrored, key) - 1.0)) + 0.55 * exp(sharp * (dot(mirrored, fill) - 1.0)) + 0.9 * exp(sharp * (dot(mirrored, rim) - 1.0)));
+  reflected = max(reflected, 0.03);
+  vec3 mirror = 0.04 * gloss * (1.0 - metal) + base * 1.12 * metal;
+  float grazing = pow(1.0 - facing, 5.0) * (1.0 - 0.75 * spread) * min(gloss, 1.0); // Schlick's Fresnel term
+  vec3 fresnel = mirror + (max(mirror, 0.6) - mirror) * grazing;
+  vec3 light = diffuse * (1.0 - metal * 0.82) * (1.0 - 0.5 * grazing) + fresnel * reflected * (1.0 + 0.25 * metal);
+  float cover = opaque + (1.0 - opaque) * 0.85 * pow(1.0 - facing, 2.5);
+  gl_FragColor = vec4(encoded(bent(light + glow)), 1.0) * cover * fade;
+}`;
+
+// A material of its own for each shape; \`opacity\` fades it, \`emissive\` lights it up.
+export function lookOf(color, finish, shared) {
+  const base = new Color(color); // three keeps it linear
+  for (const channel of "rgb") base[channel] = Math.min(Math.max(base[channel], 0.012), 0.86); // the darkest paint and the brightest that exist
+  const emissive = new Color(0);
+  const material = new ShaderMaterial({
+    vertexShader, fragmentShader, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, premultipliedAlpha: true,
+    uniforms: {
+      base: { value: base }, glow: { value: emissive }, metal: { value: finish.metal }, rough: { value: finish.roughness },
+      gloss: { value: finish.gloss }, opaque: { value: finish.opacity }, fade: { value: 1 }, ...shared,
+    },
+  });
+  material.emissive = emissive;
+  material.clear = finish.opacity < 1;
+  return material;
+}
+
+export function refreshLook(material, { faded, opacity, cutting }) {
+  material.opacity = material.uniforms.fade.value = faded ? opacity : 1;
+  material.transparent = faded || material.clear;
+  material.depthWrite = !material.transparent;
+  if (Boolean(material.defines?.CUT) !== cutting) {
+    material.defines = cutting ? { CUT: 1 } : {};
+    material.needsUpdate = true;
+  }
+}
+
+export const sharedLook = () => ({
+  up: { value: new Vector3(0, 0, 1) },
+  flat_view: { value: false },
+  planes: { value: [new Vector4(), new Vector4(), new Vector4()] },
+  cuts: { value: 0 },
+  hatch: { value: [1.2, 7] },
+});
