@@ -1,9 +1,10 @@
-"""The page of a report: how soon it can be used, and how large it is.
+"""The page of a report: how soon it can be used, how smoothly it plays, and how large it is.
 
-    python benchmarks/report.py [--out report.json]
+    python benchmarks/report.py [--out report.json] [--sizes]
 
-Twenty parts of ten thousand triangles each, in headless Chromium with a software renderer. The goal is for an idle machine with two
-processors; the time is the page's own clock, from the navigation to the end of its first frame.
+The table football, 36 parts, in headless Chromium with a software renderer, its picture 1280 × 720 pixels. The goals are for an idle
+machine with two processors and no GPU. The first frame is timed by the page's own clock, from the navigation; frames are counted while
+the whole product plays, after two seconds in which the page finds the resolution that the machine can draw.
 """
 
 from __future__ import annotations
@@ -19,72 +20,71 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from playwright.sync_api import sync_playwright
 
 from articad.assembly import Assembly
-from articad.connectors import SE3, Connector
-from articad.geometry.part import Part
-from articad.geometry.shapes import sphere
-from articad.kinematics import declare
-from articad.report import report_page, viewer_model
-from benchmarks.timing import Table, measure, report
+from articad.plan.schema import AssemblyPlan
+from articad.report import Documents, report_page
+from benchmarks.timing import Table, report
 
-PARTS, SEGMENTS = 20, 101  # 101 segments make about 10k triangles
-FRAME_SECONDS, PAGE_BYTES = 2.0, 1_000_000
+ROOT = Path(__file__).resolve().parents[1]
+EXAMPLE = "table_football"
+FRAME_SECONDS, FRAMES_PER_SECOND, PAGE_BYTES = 1.0, 15.0, 1_500_000
 FLAGS = ["--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--no-sandbox"]
+WHOLE = "const s = document.querySelector('#stage').style; s.position = 'fixed'; s.inset = '0'; s.height = 'auto'; s.zIndex = 9;"
+COUNTED = """async () => {
+  await new Promise(done => setTimeout(done, 2000));
+  const { view } = articad, before = view.frames, start = performance.now();
+  await new Promise(done => setTimeout(done, 5000));
+  const { width, height } = view.canvas;
+  return [(view.frames - before) / (performance.now() - start) * 1000, width, height];
+}"""
 ROUNDS = 5
 
 
-def assembly() -> Assembly:
-    """Return a row of balls, each on a hinge on the one before; no two share a mesh."""
-    parts = [
-        Part.from_mesh(
-            f"ball_{i}",
-            sphere(9.0 + 0.01 * i, SEGMENTS),
-            connectors={
-                "near": Connector("near", SE3.from_translation([-10, 0, 0])),
-                "far": Connector("far", SE3.from_translation([10, 0, 0])),
-            },
-        )
-        for i in range(PARTS)
-    ]
-    joints = [declare.revolute(f"joint_{i}", parts[i]["far"], parts[i + 1]["near"], limits=(-1.0, 1.0)) for i in range(PARTS - 1)]
-    return Assembly.from_parts("chain", parts=parts, joints=joints, ground="ball_0")
+def page_of(name: str) -> tuple[int, str]:
+    """Return the number of parts and the page of an example, with its checks and its plan."""
+    folder = ROOT / "examples" / name
+    plan = AssemblyPlan.load(folder)
+    assembly = Assembly.from_plan(plan, folder / "parts")
+    return len(assembly.parts), report_page(assembly, Documents(checks=assembly.check().to_json(), plan=plan.dumps()))
 
 
 def main() -> int:
     """Measure, print, and return 1 if a goal was missed."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", help="write the tables as JSON")
+    parser.add_argument("--sizes", action="store_true", help="make the page of every example, too, and state its size")
     options = parser.parse_args()
-    made = assembly()
-    triangles = sum(len(part.mesh.triangles) for part in made.parts.values() if part.mesh is not None)
-    text = report_page(made)
-    meshes = sum(len(value) for mesh in viewer_model(made)["meshes"] for value in mesh.values() if isinstance(value, str))
-    times = measure({"making the page": lambda: report_page(made)}, rounds=2)
-    frames, drags = [], []
+    parts, text = page_of(EXAMPLE)
+    frames = []
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         file = Path(folder, "page.html")
         file.write_text(text, encoding="utf-8")
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         for _ in range(ROUNDS):
-            page = browser.new_page(viewport={"width": 1200, "height": 800})
+            page = browser.new_page(viewport={"width": 1280, "height": 720})
             page.goto(file.as_uri())
             page.wait_for_selector("html[data-ready]", state="attached", timeout=60_000)
             frames.append(page.evaluate("articad.firstFrame") / 1000)
-            drags.append(
-                page.evaluate(
-                    "(() => { const t = performance.now(); articad.set({joint_0: 0.5}); articad.view.draw(); return performance.now() - t })()"
-                )
-                / 1000
-            )
             page.close()
+        page = browser.new_page(viewport={"width": 1280, "height": 720})
+        page.goto(file.as_uri())
+        page.wait_for_selector("html[data-ready]", state="attached", timeout=60_000)
+        page.evaluate(f"() => {{ {WHOLE} document.querySelector('#play').click() }}")
+        rate, width, height = page.evaluate(COUNTED)
         browser.close()
-    first, size = min(frames), len(text.encode()) - meshes
+    pages = sorted(path.parent.name for path in (ROOT / "examples").glob("*/plan.json")) if options.sizes else [EXAMPLE]
+    sizes = {name: len((text if name == EXAMPLE else page_of(name)[1]).encode()) for name in pages}
+    first, largest = min(frames), max(sizes, key=lambda name: sizes[name])
     notes = (
-        f"{'met   ' if first <= FRAME_SECONDS else 'MISSED'} first frame {first:.2f} s, slowest {max(frames):.2f} s (goal <= {FRAME_SECONDS:g} s)",
-        f"{'met   ' if size <= PAGE_BYTES else 'MISSED'} page without meshes {size} bytes (goal <= {PAGE_BYTES}); meshes {meshes} bytes",
+        _note(first <= FRAME_SECONDS, f"first frame {first:.2f} s, slowest of {ROUNDS} {max(frames):.2f} s (goal <= {FRAME_SECONDS:g} s)"),
+        _note(rate >= FRAMES_PER_SECOND, f"{rate:.1f} frames/s at 1280x720, drawn as {width}x{height} (goal >= {FRAMES_PER_SECOND:g})"),
+        _note(sizes[largest] <= PAGE_BYTES, f"largest of {len(sizes)} pages: {largest}, {sizes[largest]} bytes (goal <= {PAGE_BYTES})"),
     )
-    shown = dict(times) | {"first frame": first, "moving a driver, until the drawing is asked for": min(drags)}
-    report([Table(f"page of {PARTS} parts, {triangles} triangles", shown, notes=notes)], options.out)
-    return 0 if first <= FRAME_SECONDS and size <= PAGE_BYTES else 1
+    report([Table(f"page of {parts} parts", {"first frame": first, "a frame while playing": 1 / rate}, notes=notes)], options.out)
+    return 0 if all(note.startswith("met") for note in notes) else 1
+
+
+def _note(met: bool, words: str) -> str:
+    return f"{'met   ' if met else 'MISSED'} {words}"
 
 
 if __name__ == "__main__":

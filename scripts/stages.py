@@ -62,7 +62,7 @@ def _tests(*more: str) -> Outcome:
 
 
 def _viewer() -> Outcome:
-    """Build the page's script from its sources, in a folder of its own, and compare it with the one that is committed."""
+    """Build the page's script from its sources, compare it with the one that is committed, and look for barriers with axe-core."""
     npm = shutil.which("npm")
     if npm is None:
         print("skipped: npm is missing; as root, apt-get install nodejs npm")
@@ -77,9 +77,12 @@ def _viewer() -> Outcome:
                 print(done.stdout, done.stderr)
                 return Outcome(0, 1)
         different = [name for name in ("viewer.js", "viewer.css") if Path(folder, name).read_bytes() != (report / name).read_bytes()]
+        barriers = [PYTHON, "-m", "pytest", "-q", "-p", "no:xdist", "tests/report/test_controls.py", "-k", "axe"]
+        environment = ENVIRONMENT | {"ARTICAD_AXE": str(copy / "node_modules" / "axe-core" / "axe.min.js")}
+        free = subprocess.run(barriers, cwd=ROOT, env=environment, check=False).returncode == 0
     if different:
         print(f"{', '.join(different)}: not what the sources give; cd articad/report/viewer && npm ci && npm run build")
-    return Outcome(2 - len(different), len(different))
+    return Outcome(2 - len(different) + free, len(different) + (not free))
 
 
 STAGES: dict[str, Callable[[], Outcome]] = {

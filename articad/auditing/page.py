@@ -1,10 +1,14 @@
-"""The report of an audit as one static HTML page, and as lines for a terminal: most severe first."""
+"""The report of an audit as one HTML page, and as lines for a terminal: most severe first."""
 
 from __future__ import annotations
 
 from html import escape
+from typing import TYPE_CHECKING
 
 from articad.auditing.report import Audit, Scoreboard
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
 
 _TITLES = {"error": "Errors", "warning": "Warnings", "info": "Notes"}
 _STYLE = """\
@@ -16,8 +20,12 @@ small{color:#5b6875}
 """
 
 
-def audit_page(audit: Audit) -> str:
-    """Return the page of one file."""
+def audit_page(audit: Audit, assembly: Assembly | None = None) -> str:
+    """Return the page of one file: the findings beside the model, which each of them moves to its pose; without a model, the findings alone."""
+    if assembly is not None:
+        from articad.report import Documents, report_page  # noqa: PLC0415 - only this page needs the viewer
+
+        return report_page(assembly, Documents(audit=audit.to_json()))
     return _page(f"Audit of {audit.file}", _one(audit))
 
 

@@ -67,7 +67,7 @@ def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
     if options.report:
         from articad.auditing.page import audit_page
 
-        _write_page(Path(options.report), audit_page(audit))
+        _write_page(Path(options.report), audit_page(audit, _model(options, terminal)))
     _print_audit(audit, terminal, findings=not options.table)
     report = audit.to_json()
     if options.fix:
@@ -140,6 +140,16 @@ def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: AuditOp
     made = loaded(options.target, options, terminal)
     with terminal.progress("Auditing"):
         return audit_made(made, options.target, choices)
+
+
+def _model(options: argparse.Namespace, terminal: Terminal) -> Assembly | None:
+    """Return the model to show beside the findings, or None if the file has so severe faults that it cannot be read."""
+    from articad.errors import ArticadError
+
+    try:
+        return loaded(options.target, options, terminal)
+    except ArticadError:
+        return None
 
 
 def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: AuditOptions) -> Report:

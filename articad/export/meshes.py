@@ -34,17 +34,21 @@ class Drawn(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def drawn(mesh: TriMesh) -> Drawn:
+def drawn(mesh: TriMesh, least: float = 0.0) -> Drawn:
     """Return a mesh with few triangles in place of one that is finer than drawings need.
 
     The surface moves by 1/2000 of the mesh's diagonal, on round faces about 0.1 rad between facets, and by more as long as there are
     more than `DRAWN_TRIANGLES`.
+
+    Args:
+        mesh: The mesh.
+        least: Deviation that cannot be seen [mm]; the surface may move by that much in any case.
     """
     body = manifold(mesh) if mesh.is_closed else None
     if body is None or body.status() != manifold3d.Error.NoError or body.volume() <= 0:
         return Drawn(mesh, 0.0)
     size = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
-    share = DRAWN_SHARE
+    share = min(max(DRAWN_SHARE, least / size), MOST_SHARE)
     while True:
         found = body.simplify(share * size).to_mesh64()
         if len(found.tri_verts) <= DRAWN_TRIANGLES or share >= MOST_SHARE:
@@ -60,11 +64,16 @@ def built_meshes(parts: Iterable[Part]) -> dict[str, TriMesh]:
     return {part.solid.mesh.digest: part.solid.mesh for part in parts if part.solid is not None and part.solid.deflection > 0}
 
 
-def drawn_shapes(part: Part) -> tuple[Shape, ...]:
-    """Return the visual shapes of a part, or its collision shapes if it has none; meshes of a built part are simplified."""
+def drawn_shapes(part: Part, least: float = 0.0) -> tuple[Shape, ...]:
+    """Return the visual shapes of a part, or its collision shapes if it has none; meshes of a built part are simplified.
+
+    Args:
+        part: The part.
+        least: Deviation that cannot be seen where the part is drawn [mm].
+    """
     built = built_meshes([part])
     shapes = part.visuals or part.collisions
-    return tuple(replace(one, mesh=drawn(built[one.mesh.digest]).mesh) if one.mesh.digest in built else one for one in shapes)
+    return tuple(replace(one, mesh=drawn(built[one.mesh.digest], least).mesh) if one.mesh.digest in built else one for one in shapes)
 
 
 class MeshFiles:

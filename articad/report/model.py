@@ -20,6 +20,7 @@ from articad.report.drawing import drawn_mesh
 MODEL_SCHEMA = "articad.viewer/1"
 _FREE_TRAVEL = 0.25  # of the assembly's size: slider range of a travel without limits, in both directions
 _DEFAULT_CONE = math.pi / 2  # slider range of a ball without limits
+_UNSEEN = 2.5e-4  # of the assembly's size: a quarter of a pixel of the whole on a screen
 _DEFAULT_LENGTH = 100.0  # mm, if nothing has a size
 
 
@@ -87,10 +88,11 @@ def _parts(assembly: Assembly) -> tuple[list[Json], list[Json]]:
     parts: list[Json] = []
     mechanism = assembly.mechanism
     rest = dict(zip(mechanism.parts, mechanism.at_rest, strict=True))
+    least = _UNSEEN * _size(assembly)
     ways = explosion(assembly.parts, tuple(mechanism.tree.edges), rest)
     for name, part in assembly.parts.items():
         shapes = []
-        for shape in drawn_shapes(part):
+        for shape in drawn_shapes(part, least):
             if not len(shape.mesh.triangles):
                 continue
             if shape.mesh.digest not in known:

@@ -34,7 +34,7 @@ def drawn_overlaps(assembly: Assembly, *reports: Json | None) -> list[Json]:
         seen.add(key)
         placed = assembly.poses(assembly.q(**pose))
         poses = {name: placed[index[name]] for name in pair["parts"]}
-        for mesh in overlap_meshes({name: assembly.parts[name] for name in pair["parts"]}, poses):
-            if 0 < len(mesh.triangles) <= _TRIANGLES:
-                found.append({"parts": [index[name] for name in pair["parts"]], "pose": pose, "mesh": drawn_mesh(mesh)})
+        numbers = [index[name] for name in pair["parts"]]
+        meshes = overlap_meshes({name: assembly.parts[name] for name in pair["parts"]}, poses)
+        found += [{"parts": numbers, "pose": pose, "mesh": drawn_mesh(mesh)} for mesh in meshes if 0 < len(mesh.triangles) <= _TRIANGLES]
     return found

@@ -63,6 +63,7 @@ def all_sections(assembly: Assembly, documents: Documents) -> str:
         [
             _section("What was asked for", f"<p>{escape(documents.prompt)}</p>" if documents.prompt else ""),
             _section(f"Findings ({len(findings)})", _findings(findings, known), opened=bool(findings)),
+            _section("Audit", _audit(documents.audit), opened=True),
             _section("Parts", _parts(assembly), opened=True),
             _section("Joints", _joints(assembly)),
             _section("Interference", _pairs(documents.checks, known)),
@@ -158,7 +159,8 @@ def _findings(findings: Sequence[Json], known: set[str]) -> str:
     for finding in {(entry["code"], entry["message"]): entry for entry in reversed(findings)}.values():
         numbers = measured_against(finding)
         times = same[finding["code"], finding["message"]]
-        hint = f'<br><span class="hint">{escape(finding["hint"])}</span>' if finding.get("hint") else ""
+        told = [finding.get("cause"), finding.get("hint")]
+        hint = "".join(f'<br><span class="hint">{escape(words)}</span>' for words in told if words)
         parts, pose = finding.get("parts") or [], finding.get("pose")
         rows.append(
             [
@@ -168,6 +170,20 @@ def _findings(findings: Sequence[Json], known: set[str]) -> str:
             ]
         )
     return _scroll(html_table(["code", "what", ""], rows[::-1]))
+
+
+def _audit(audit: Json | None) -> str:
+    """Return which engines load the file, how its motion was examined, and what was not looked at."""
+    if audit is None:
+        return ""
+    words = {True: "loads", False: "does not load", None: "was not asked"}
+    engines = [[loading["engine"], words[loading["loads"]]] for loading in audit["engines"]]
+    undone = "".join(f"<li>{escape(line)}</li>" for line in audit["not_checked"])
+    return (
+        f"<p>{escape(audit['file'])}: {audit['links']} links, {audit['joints']} joints that move; motion {escape(audit['motion'])}.</p>"
+        + _scroll(html_table(["engine", "the file"], engines))
+        + (f"<h3>Not looked at</h3><ul>{undone}</ul>" if undone else "")
+    )
 
 
 def _parts(assembly: Assembly) -> str:
@@ -193,7 +209,7 @@ def _parts(assembly: Assembly) -> str:
                 Html(f'<button type="button" data-stl="{number}" aria-label="save {escape(name)} as STL">STL</button>'),
             ]
         )
-    note = f'<p class="quiet">Total: {total_mass(assembly)}. Click a name to show the part alone; indented parts are attached to those above.</p>'
+    note = f'<p class="quiet">Total: {total_mass(assembly)}. Click a name to select the part; indented parts are attached to those above.</p>'
     return _scroll(html_table(["", "part", "material", "mass kg", "volume mm³", ""], rows, numbers=(3, 4))) + note
 
 

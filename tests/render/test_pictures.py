@@ -20,6 +20,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import ArticadError, KernelUnavailableError, UnknownJointError
 from articad.geometry.part import Part
 from articad.geometry.shapes import box, sphere
+from articad.interference.explosion import exploded
 from articad.kinematics import declare
 from articad.render import (
     Camera,
@@ -267,14 +268,17 @@ def test_a_black_part_is_drawn_so_bright_that_its_edges_are_seen(rail: Assembly)
     assert pale[50, 50].tolist() == pytest.approx([200 * 0.9, 164 * 0.9, 110 * 0.9], rel=0.15), "others keep their colour"
 
 
-def test_an_exploded_view_moves_parts_apart(rail: Assembly) -> None:
-    scene = scene_of(rail.parts, dict(rail.at()))
+def test_an_exploded_view_pulls_parts_out_of_each_other_along_their_joints(rail: Assembly) -> None:
+    edges, rest = tuple(rail.mechanism.tree.edges), rail.mechanism.rest_poses()
+    apart = exploded(rail.parts, edges, rest, rest, 1.0)
 
-    apart = scene.exploded(1.0)
-
-    gap = apart.items[1].vertices.mean(axis=0) - apart.items[0].vertices.mean(axis=0)
-    assert gap[2] == pytest.approx(30.0)
-    assert scene.exploded(0.0).bounds == pytest.approx(scene.bounds)
+    for edge in edges:
+        axis = edge.joint.T_parent_connector.matrix[:3, 2]
+        way = apart[edge.part].translation - rest[edge.part].translation - apart[edge.parent].translation + rest[edge.parent].translation
+        assert np.abs(np.cross(way, rest[edge.parent].matrix[:3, :3] @ axis)).max() < 1e-9, "along the axis"
+        assert np.linalg.norm(way) > 1.0
+    same = exploded(rail.parts, edges, rest, rest, 0.0)
+    assert all(same[name].allclose(rest[name]) for name in rest)
 
 
 def test_a_part_alone_is_drawn_in_its_own_frame(rail: Assembly) -> None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import io
 import json
 import math
+import os
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from articad import cli
 from articad.assembly import Assembly
 from articad.commands.watching import PageServer
 from articad.connectors.connector import Connector
@@ -23,10 +26,10 @@ from articad.kinematics import declare
 from articad.report import Documents, report_page
 from tests.assemblies import four_bar
 from tests.report.conftest import Opened
-from tests.report.test_page import assert_silent, contrast, error_of, hinged, on_screen, pulled
+from tests.report.test_page import ROOT, assert_silent, contrast, error_of, hinged, on_screen, pulled
 
 Open = Callable[..., Opened]
-SCREENS = {
+SCREENS: dict[str, dict[str, Any]] = {
     "desktop light": {"width": 1280, "height": 720},
     "tablet dark": {"width": 820, "height": 1180, "scheme": "dark", "phone": True},
     "phone light": {"width": 390, "height": 844, "phone": True},
@@ -42,7 +45,7 @@ def checked(assembly: Assembly) -> Documents:
 
 @pytest.fixture(params=SCREENS)
 def screen(request: pytest.FixtureRequest) -> dict[str, Any]:
-    return SCREENS[request.param]
+    return SCREENS[str(request.param)]
 
 
 def frame(opened: Opened) -> None:
@@ -50,7 +53,7 @@ def frame(opened: Opened) -> None:
     opened("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
-def test_every_control_does_what_it_says(open_page: Open, screen: dict[str, Any]) -> None:
+def test_selection_and_sliders_do_what_they_say(open_page: Open, screen: dict[str, Any]) -> None:
     assembly = hinged()
     opened = open_page(report_page(assembly, checked(assembly)), **screen)
     page = opened.page
@@ -83,7 +86,14 @@ def test_every_control_does_what_it_says(open_page: Open, screen: dict[str, Any]
     assert opened("articad.q().hinge") == 0.0
     assert opened("[...document.querySelectorAll('.limits')].map(each => each.textContent)") == ["0.0° … 103.1°", "-20.0 mm … 20.0 mm"]
     page.click("#reset")
-    page.evaluate("scrollTo(0, 0)")
+    assert opened("articad.q()") == {driver.name: driver.rest for driver in assembly.drivers}
+    assert_silent(opened)
+
+
+def test_views_sections_names_and_theme_do_what_they_say(open_page: Open, screen: dict[str, Any]) -> None:
+    assembly = hinged()
+    opened = open_page(report_page(assembly, checked(assembly)), **screen)
+    page = opened.page
 
     # Views, parallel rays, frames of joints, names.
     for view, away in (("front", [0, -1, 0]), ("right", [1, 0, 0])):
@@ -239,7 +249,7 @@ def saved(opened: Opened, button: str) -> bytes:
     """Press a button of the save menu and return the file that it makes."""
     if not opened.page.locator(f"#{button}").is_visible():
         opened.page.locator(".menu summary", has_text="save").click()
-    with opened.page.expect_download(timeout=120_000) as download:
+    with opened.page.expect_download(timeout=240_000) as download:
         opened.page.click(f"#{button}")
     return Path(download.value.path()).read_bytes()
 
@@ -256,12 +266,12 @@ def test_pictures_and_films_are_saved(open_page: Open) -> None:
     assert (np.abs(pixels - pixels[2, 2]).max(axis=-1) > 40).mean() > 0.05, "the model is there"
     with Image.open(io.BytesIO(saved(opened, "save-gif"))) as film:
         assert film.format == "GIF"
-        assert film.n_frames == 48
+        assert getattr(film, "n_frames", 1) == 40
         frames = []
         for index in (0, 6, 17):
             film.seek(index)
             frames.append(np.asarray(film.convert("RGB")).astype(int))
-    assert all((np.abs(a - b).max(axis=-1) > 40).mean() > 0.01 for a, b in zip(frames, frames[1:], strict=False)), "it moves"
+    assert all((np.abs(a - b).max(axis=-1) > 40).mean() > 0.01 for a, b in pairwise(frames)), "it moves"
     assert np.abs(frames[0][2, 2] - pixels[2, 2]).max() < 12, "the palette keeps colours"
     webm = saved(opened, "save-webm")
     assert webm[:4] == b"\x1a\x45\xdf\xa3"
@@ -329,6 +339,29 @@ def test_an_overlap_is_red_and_the_camera_flies_to_it(open_page: Open) -> None:
     opened("articad.set({ rail: 10 })")
     assert opened(red) == 0
     assert_silent(opened)
+
+
+def test_a_cut_shows_the_part_that_is_cut_and_not_those_behind_it(open_page: Open) -> None:
+    joint = {"side": Connector("side", SE3.from_axes((0, 0, 0), (0, 1, 0), (0, 0, 1)))}
+    before = Part.from_mesh("before", box(40, 40, 40), connectors=joint, color="#20b040")
+    behind = Part.from_mesh("behind", box(60, 10, 60).transformed(SE3.from_translation([0, 40, 0])), connectors=joint, color="#c03020")
+    two = Assembly.from_parts(
+        "two", parts=[before, behind], joints=[declare.fixed("side", before["side"], behind["side"])], ground="before"
+    )
+    opened = open_page(report_page(two), width=900, height=500)
+    opened.page.click("[data-view=front]")
+    opened.page.locator("#cut-y").evaluate("box => box.click()")
+    opened.page.locator("#cut-y-at").evaluate("s => { s.value = 0.3; s.dispatchEvent(new Event('input')) }")
+    opened.page.wait_for_function("() => articad.view.settled")
+
+    seen = opened("async () => { const b = await articad.picture(); return Array.from(new Uint8Array(await b.arrayBuffer())) }")
+    with Image.open(io.BytesIO(bytes(seen))) as picture:
+        pixels = np.asarray(picture.convert("RGB")).astype(int)
+    middle = pixels[pixels.shape[0] // 2 - 20 : pixels.shape[0] // 2 + 20, pixels.shape[1] // 2 - 20 : pixels.shape[1] // 2 + 20].reshape(
+        -1, 3
+    )
+    assert (middle[:, 1] > middle[:, 0]).all(), "green: the part that is cut"
+    assert np.ptp(middle[:, 1]) > 30, "hatched"
 
 
 @pytest.fixture
@@ -399,7 +432,7 @@ def test_a_phone_keeps_the_model_above_its_sliders_and_shows_tables_as_cards(ope
     assert opened("getComputedStyle(document.querySelector('.scroll td[data-label]'), '::before').content").strip('"') == "code"
 
 
-AXE = Path(__file__).resolve().parents[2] / "articad" / "report" / "viewer" / "node_modules" / "axe-core" / "axe.min.js"
+AXE = Path(os.environ.get("ARTICAD_AXE", ROOT / "articad/report/viewer/node_modules/axe-core/axe.min.js"))
 
 
 @pytest.mark.skipif(
@@ -426,3 +459,17 @@ def serious(page: Any) -> list[str]:
         if rule["impact"] in ("serious", "critical")
         for node in rule["nodes"]
     ]
+
+
+def test_an_audit_page_shows_the_model_and_each_finding_moves_it(open_page: Open, tmp_path: Path) -> None:
+    page = tmp_path / "audit.html"
+    assert cli.main(["audit", str(ROOT / "examples" / "hinge.urdf"), "--no-engines", "--report", str(page), "-q"]) == 1
+    opened = open_page(page.read_text(encoding="utf-8"))
+
+    assert opened("articad.model.parts.map(p => p.name)") == ["post", "flap"]
+    row = opened.page.locator("tr", has_text="E_FLOATING")
+    assert "10 mm" in row.inner_text()
+    row.locator("[data-show]").click()
+    assert opened("[...articad.view.focused]") == [1]
+    assert "audit failed" in opened.page.inner_text("header")
+    assert_silent(opened)

@@ -21,7 +21,6 @@ uniform bool flat_view; // orthographic: all rays are parallel
 #ifdef CUT
 uniform vec4 planes[3];
 uniform int cuts;
-uniform mat4 projectionMatrix;
 uniform vec2 hatch; // width of a line and distance of two, pixels
 #endif
 varying vec3 vNormal;
@@ -39,19 +38,14 @@ void main() {
   vec3 normal = normalize(vNormal) * (gl_FrontFacing ? 1.0 : -1.0);
   vec3 eye = flat_view ? vec3(0.0, 0.0, 1.0) : normalize(-vPlace);
 #ifdef CUT
-  // A ray that meets the inner side of a surface first has entered the part through a plane: the cut, drawn there and hatched.
-  vec3 origin = flat_view ? vec3(vPlace.xy, 0.0) : vec3(0.0);
-  float entry = -1e30;
+  // A ray that meets the inner side of a surface first has entered the part through a plane: the cut, hatched.
   for (int k = 0; k < 3; k++) {
     if (k >= cuts) break;
     if (dot(planes[k].xyz, vPlace) + planes[k].w < 0.0) discard;
-    float slope = dot(planes[k].xyz, -eye);
-    if (slope > 0.0) entry = max(entry, -(dot(planes[k].xyz, origin) + planes[k].w) / slope);
   }
   gl_FragDepth = gl_FragCoord.z;
   if (!gl_FrontFacing) {
-    vec4 clip = projectionMatrix * vec4(origin - eye * entry, 1.0);
-    gl_FragDepth = clamp(clip.z / clip.w * 0.5 + 0.5, 0.0, 1.0);
+    gl_FragDepth = gl_FragCoord.z - 5e-4; // before the part's own edges
     float line = mod(gl_FragCoord.x + gl_FragCoord.y, hatch.y) < hatch.x ? 0.45 : 1.0;
     gl_FragColor = vec4(encoded(bent(mix(base, vec3(0.75), 0.25) * line + glow)), 1.0) * fade;
     return;

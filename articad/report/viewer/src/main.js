@@ -125,11 +125,13 @@ function start(button, movers, from = null) {
   pressed(button, true);
   button.textContent = button.id === "play" ? "❚❚ Pause" : "❚❚";
   for (const mover of movers) mover.rest = mover.restValue();
+  if (view) view.busy = true;
   player.start(movers, { from, together: !solver.needed });
 }
 
 function stop() {
   player.stop();
+  if (view) view.busy = false;
   if (playing) {
     pressed(playing, false);
     playing.textContent = playing.id === "play" ? "▶ Play" : "▶";
@@ -396,7 +398,7 @@ function picture() {
   return new Promise((done) => target.toBlob(done, "image/png"));
 }
 
-const FILM_FRAMES = 48;
+const FILM_FRAMES = 40; // for each joint, of at most three
 
 // The motion that Play shows, as so many painted pictures; then the model stands as before.
 async function film(use) {
@@ -411,7 +413,7 @@ async function film(use) {
       at: async (index, width) => {
         cycle(movers, index / total, { together: !solver.needed });
         update();
-        view.picture((source, wide, high) => painted(target, source, wide, high), width);
+        view.picture((source, wide, high) => painted(target, source, wide, high), { width, fine: false });
         await new Promise((done) => setTimeout(done));
         return target;
       },
@@ -426,7 +428,7 @@ async function film(use) {
 // A WebM film: frames are handed to the browser's own recorder one by one.
 function saveVideo() {
   film(async ({ count, at }) => {
-    const width = 960, stage = document.createElement("canvas");
+    const width = 720, stage = document.createElement("canvas");
     const copy = (made) => painted(stage, made, made.width, made.height);
     copy(await at(0, width));
     const stream = stage.captureStream(25), recorder = new MediaRecorder(stream, { mimeType: "video/webm", videoBitsPerSecond: 4e6 });
@@ -520,6 +522,7 @@ function buildPointer() {
     canvas.focus();
     stop();
     drag = { hit, driver };
+    view.busy = true;
     emphasise(driver.name);
     canvas.classList.add("dragging");
   }, { capture: true });
@@ -536,6 +539,7 @@ function buildPointer() {
   const released = (event) => {
     const moved = !down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4;
     drag = down = null;
+    view.busy = playing !== null;
     canvas.classList.remove("dragging");
     if (moved || event.type === "pointercancel") return;
     const hit = view.pick(event.clientX, event.clientY);

@@ -23,6 +23,18 @@ class Pass {
   }
 }
 
+// A picture that was drawn elsewhere, on the canvas. It is encoded already.
+export class Copy {
+  constructor() {
+    this.pass = new Pass("uniform sampler2D image; varying vec2 at; void main() { gl_FragColor = texture2D(image, at); }", { image: { value: null } });
+  }
+
+  draw(renderer, texture) {
+    this.pass.uniforms.image.value = texture;
+    this.pass.draw(renderer, null);
+  }
+}
+
 const SHADOW_PIXELS = 192;
 
 // The shadow on the ground: heights of parts seen from below, blurred, more the higher they are.

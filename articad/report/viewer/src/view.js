@@ -3,11 +3,12 @@
 import {
   Box3, BufferAttribute, BufferGeometry, Color, ConeGeometry, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh,
   MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, Plane, Raycaster, Scene, Sphere, SphereGeometry, Vector2, Vector3, WebGLRenderer,
+  WebGLRenderTarget,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { fromPose, multiply } from "./kinematics.js";
 import { lookOf, refreshLook, sharedLook } from "./look.js";
-import { GroundShadow, MARKS, Occlusion, PARTS } from "./shade.js";
+import { Copy, GroundShadow, MARKS, Occlusion, PARTS } from "./shade.js";
 import { featureAt } from "./features.js";
 
 const INK = 0x20242a, CHALK = 0x737a84; // edges, and edges of black parts
@@ -17,6 +18,7 @@ const AXES = [0xd33a3a, 0x2a9b48, 0x3a66d8];
 const FADED = 0.12; // opacity of parts that a finding is not about
 const FIELD = 32; // degrees
 const FILLED = 0.84; // of the picture's height or width, by the model
+const TOOLS = 110; // pixels that the tools take at the upper and lower edge
 const STILL = 140; // ms without a change until the frame of full quality
 const SLOW = 48, QUICK = 26; // ms of a frame: draw fewer pixels, or more
 const SCALES = [1, 0.75, 0.55, 0.4, 0.3]; // of the pixels in each direction, while something moves
@@ -75,7 +77,7 @@ export class View {
     this.canvas = canvas;
     this.mechanism = mechanism;
     this.changed = changed; // told after each frame: labels follow
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: false });
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: true, preserveDrawingBuffer: false });
     this.renderer.localClippingEnabled = true;
     this.ratio = Math.min(window.devicePixelRatio, 2);
     this.renderer.setPixelRatio(this.ratio);
@@ -94,19 +96,22 @@ export class View {
     this.focused = null;
     this.hovered = this.selected = -1;
     this.frames = 0;
-    this.level = 0; // index in SCALES
+    this.level = 2; // index in SCALES; the first frame of full quality tells which one this machine can draw
     this.interval = 0; // ms between frames, smoothed
-    this.settled = false;
+    this.settled = this.busy = false; // busy: something plays or is dragged, so that frames follow each other
     this.#buildParts();
     this.#buildJoints();
     this.#buildOverlaps();
     this.markers = new Group();
     this.scene.add(this.markers);
     this.occlusion = new Occlusion();
+    this.copy = new Copy();
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.ask());
+    this.controls.addEventListener("start", () => (this.busy = true));
+    this.controls.addEventListener("end", () => (this.busy = false));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
   }
 
@@ -277,11 +282,11 @@ export class View {
   #framed(way) {
     const right = new Vector3(0, 0, 1).cross(way).normalize(), up = way.clone().cross(right);
     const half = this.#halfSize();
-    const slope = Math.tan((FIELD * Math.PI) / 360) * FILLED;
+    const slope = Math.tan((FIELD * Math.PI) / 360), tall = Math.min(FILLED, Math.max(0.5, 1 - TOOLS / this.canvas.clientHeight));
     let distance = 0;
     for (let k = 0; k < 8; k++) {
       const corner = new Vector3(k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z);
-      const least = Math.max(Math.abs(corner.dot(right)) / this.perspective.aspect, Math.abs(corner.dot(up))) / slope;
+      const least = Math.max(Math.abs(corner.dot(right)) / this.perspective.aspect / FILLED, Math.abs(corner.dot(up)) / tall) / slope;
       distance = Math.max(distance, least + corner.dot(way));
     }
     return distance;
@@ -513,10 +518,10 @@ export class View {
   #moving(now) {
     const since = now - (this.before ?? 0);
     this.before = now;
-    if (since < 250) {
+    if (this.busy || since < 250) {
       this.interval = this.interval ? 0.7 * this.interval + 0.3 * since : since;
       this.steady = (this.steady ?? 0) + 1;
-      if (this.steady > 3 && this.interval > SLOW && this.level < SCALES.length - 1) this.#rescale(this.level + (this.interval > 2 * SLOW ? 2 : 1));
+      if (this.steady > 2 && this.interval > SLOW && this.level < SCALES.length - 1) this.#rescale(this.level + (this.interval > 2 * SLOW ? 2 : 1));
       else if (this.steady > 20 && this.interval < QUICK && this.level > 0) this.#rescale(this.level - 1);
     } else this.steady = this.interval = 0;
     this.draw();
@@ -524,7 +529,7 @@ export class View {
 
   #rescale(level) {
     this.level = Math.min(level, SCALES.length - 1);
-    this.steady = 0;
+    this.steady = this.interval = 0;
   }
 
   #resolution(scale) {
@@ -536,7 +541,7 @@ export class View {
   draw() {
     this.asked = this.settled = false;
     this.#resolution(SCALES[this.level]);
-    this.#render({ shadow: this.frames % 3 === 2 }); // not in the first frame
+    this.#render({ shadow: this.frames % (this.level ? 6 : 3) === 2 }); // not in the first frame
     this.frames += 1;
     this.changed();
     clearTimeout(this.timer);
@@ -544,9 +549,15 @@ export class View {
   }
 
   // The frame of full quality.
-  finish() {
+  finish({ fine = true } = {}) {
+    const started = performance.now();
     this.#resolution(1);
-    this.#render({ shadow: true, fine: true });
+    this.#render({ shadow: true, fine, smooth: true });
+    if (!this.tried) {
+      this.renderer.getContext().finish();
+      this.tried = true;
+      if (performance.now() - started < 2 * QUICK) this.level = 0;
+    }
     this.settled = true;
   }
 
@@ -557,7 +568,7 @@ export class View {
     return () => hidden.forEach((group) => (group.visible = true));
   };
 
-  #render({ shadow = false, fine = false } = {}) {
+  #render({ shadow = false, fine = false, smooth = this.level === 0 } = {}) {
     this.#lens();
     this.camera.updateMatrixWorld();
     const { planes, cuts, up } = this.shared;
@@ -576,17 +587,31 @@ export class View {
         this.stale = false;
       }
     }
-    this.renderer.setRenderTarget(null);
-    this.renderer.render(this.scene, this.camera);
+    if (smooth) {
+      // Smooth edges by four samples for each pixel. Frames in few pixels go without: they cost a third.
+      const { x: width, y: height } = this.renderer.getDrawingBufferSize(new Vector2());
+      if (this.smooth?.width !== width || this.smooth?.height !== height) {
+        this.smooth?.dispose();
+        this.smooth = new WebGLRenderTarget(width, height, { samples: 4 });
+      }
+      this.renderer.setRenderTarget(this.smooth);
+      this.renderer.clear();
+      this.renderer.render(this.scene, this.camera);
+      this.copy.draw(this.renderer, this.smooth.texture);
+    } else {
+      this.renderer.setRenderTarget(null);
+      this.renderer.render(this.scene, this.camera);
+    }
     if (fine && !this.cutting) this.occlusion.draw(this.renderer, this.scene, this.camera, { reach: 0.07 * this.size, planes: this.planes, show: this.#onlySolid });
   }
 
-  // Draw in full quality, and at once hand the picture to a function: it is gone after that. Width in pixels, or as on the screen.
-  picture(paint, width = null) {
+  // Draw in full quality, or without ambient occlusion for films, and at once hand the picture to a function: it is gone after that.
+  // Width in pixels, or as on the screen.
+  picture(paint, { width = null, fine = true } = {}) {
     const { clientWidth, clientHeight } = this.canvas;
     const ratio = this.ratio;
     if (width) this.ratio = width / clientWidth;
-    this.finish();
+    this.finish({ fine });
     const made = paint(this.canvas, Math.round(clientWidth * this.ratio), Math.round(clientHeight * this.ratio));
     this.ratio = ratio;
     this.ask();
