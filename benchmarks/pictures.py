@@ -39,7 +39,10 @@ def main() -> int:
             whole = seconds(example, Path(folder, "with"))
         met = whole <= GOAL * without
         missed += not met
-        print(f"{'met   ' if met else 'MISSED'} {example}: {whole:.1f} s with, {without:.1f} s without: {whole / without:.2f} times", flush=True)
+        print(
+            f"{'met   ' if met else 'MISSED'} {example}: {whole:.1f} s with, {without:.1f} s without: {whole / without:.2f} times",
+            flush=True,
+        )
     return 1 if missed else 0
 
 

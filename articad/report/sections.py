@@ -209,7 +209,9 @@ def _parts(assembly: Assembly) -> str:
                 Html(f'<button type="button" data-stl="{number}" aria-label="save {escape(name)} as STL">STL</button>'),
             ]
         )
-    note = f'<p class="quiet">Total: {total_mass(assembly)}. Click a name to select the part; indented parts are attached to those above.</p>'
+    note = (
+        f'<p class="quiet">Total: {total_mass(assembly)}. Click a name to select the part; indented parts are attached to those above.</p>'
+    )
     return _scroll(html_table(["", "part", "material", "mass kg", "volume mm³", ""], rows, numbers=(3, 4))) + note
 
 
