@@ -42,7 +42,9 @@ function set(values, { others = "stay" } = {}) {
   return arrived;
 }
 
+let quiet = false; // while several joints are written, the page is brought up to date once
 function update() {
+  if (quiet) return;
   view?.place(mechanism.poses(Q));
   view?.showOverlaps(isHere);
   for (const control of controls) control.refresh();
@@ -126,7 +128,18 @@ function start(button, movers, from = null) {
   button.textContent = button.id === "play" ? "❚❚ Pause" : "❚❚";
   for (const mover of movers) mover.rest = mover.restValue();
   if (view) view.busy = true;
-  player.start(movers, { from, together: !solver.needed });
+  player.start(movers, { from, together: !solver.needed, write: atOnce });
+}
+
+// Write several joints, then bring the page up to date.
+function atOnce(write) {
+  quiet = true;
+  try {
+    write();
+  } finally {
+    quiet = false;
+  }
+  update();
 }
 
 function stop() {
@@ -411,8 +424,7 @@ async function film(use) {
     await use({
       count: movers.length ? total : 1,
       at: async (index, width) => {
-        cycle(movers, index / total, { together: !solver.needed });
-        update();
+        atOnce(() => cycle(movers, index / total, { together: !solver.needed }));
         view.picture((source, wide, high) => painted(target, source, wide, high), { width, fine: false });
         await new Promise((done) => setTimeout(done));
         return target;

@@ -26,13 +26,13 @@ export function cycle(movers, share, { together }) {
 
 export class Player {
   // Play from the present value if only one joint moves, and from the beginning otherwise.
-  start(movers, { from, together }) {
+  start(movers, { from, together, write }) {
     const whole = PERIOD * length(movers.length, together);
     let elapsed = from === null ? 0 : PERIOD * shareOf(movers[0], from), before = performance.now();
     const step = (now) => {
       elapsed += Math.min(now - before, 100); // a page that was hidden goes on where it was
       before = now;
-      cycle(movers, (elapsed / whole) % 1, { together });
+      write(() => cycle(movers, (elapsed / whole) % 1, { together }));
       this.asked = requestAnimationFrame(step);
     };
     this.asked = requestAnimationFrame(step);
