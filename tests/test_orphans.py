@@ -161,7 +161,7 @@ def end(line: Line, number: signal.Signals, made: Path, folder: Path) -> None:
         ended_by(number, words, place, is_busy, said_to(words))
 
 
-@pytest.mark.parametrize(("turn", "line"), enumerate(LINES), ids=[line.words.split()[0] for line in LINES])
+@pytest.mark.parametrize(("turn", "line"), list(enumerate(LINES)), ids=[line.words.split()[0] for line in LINES])
 def test_a_command_that_is_ended_leaves_nothing(turn: int, line: Line, made: Path, tmp_path: Path) -> None:
     """Each command by one signal, in turn."""
     end(line, SIGNALS[turn % len(SIGNALS)], made, tmp_path)
