@@ -27,7 +27,7 @@ from articad.plan.resolve import ResolvedPart, ResolvedPlan
 
 __all__ = ["BuildCache", "BuiltPart", "Inspect", "PartKernel", "build_part", "mirror_part", "realise"]
 
-_OF_NUMBERS = {"W_CONNECTOR_DRIFT"}  # findings about this plan's numbers, not about the script: never carried over to other numbers
+_OF_PROBE = {"W_DIMENSION_UNUSED", "W_DIMENSION_REFUSED", "W_BUILD_UNCHECKED"}
 SEATED_MM, SEATED_RAD = 1e-7, 1e-10  # a smaller seat is rounding of numbers in a script; the files stay as they are
 
 Inspect = Callable[[Mapping[str, Connector], FloatArray], Findings]
@@ -130,7 +130,8 @@ def build_part(
     """Build a part of a plan, or take it from the cache.
 
     Its files are in the plan's frame: if the script put the connector to the tree parent elsewhere, the whole part is moved to match the
-    plan. A script's dimensions are probed once, not again for other numbers.
+    plan. A script whose part follows all dimensions is not probed again for other numbers. One whose part does not is: a cut in the air for
+    one number may be a slot for another.
 
     Args:
         resolved: The plan with its numbers.
@@ -151,8 +152,7 @@ def build_part(
     if folder is None:
         told = brief(resolved, name)
         script_digest = _digest(brief_digest(resolved, name), script.hex(), kernel.name, kernel.version)
-        probed = cache.get(f"{script_digest}.probe")
-        known = [] if probed is None else json.loads((probed / "findings.json").read_text())
+        probed = cache.get(f"{script_digest}.follows")
         try:
             with cache.writing(digest) as empty:
                 built = kernel.build(
@@ -163,14 +163,12 @@ def build_part(
                     probe=probed is None,
                     inspect=lambda connectors, bbox: drift_findings(target, told, connectors, bbox),
                 )
-                _add_findings(empty, known)
         except KernelError as error:
             error.partial = _kept(cache, digest, error.partial)
             raise
-        if probed is None:
-            with cache.writing(f"{script_digest}.probe") as empty:
-                of_script = [finding.to_json() for finding in built.findings if finding.code not in _OF_NUMBERS]
-                (empty / "findings.json").write_text(json.dumps(of_script))
+        if probed is None and not any(finding.code in _OF_PROBE for finding in built.findings):
+            with cache.writing(f"{script_digest}.follows") as empty:
+                (empty / "probed.json").write_text("{}")
         folder = cache.root / digest
     return _seated(target, BuiltPart.load(folder, cached=cached), kernel)
 
@@ -230,15 +228,6 @@ def _moved(kernel: PartKernel, built: BuiltPart, matrix: FloatArray) -> BuiltPar
             kernel.moved(built, matrix, empty)
         folder = cache.root / digest
     return replace(BuiltPart.load(folder, cached=built.cached), findings=built.findings)
-
-
-def _add_findings(folder: Path, known: list[dict[str, Any]]) -> None:
-    """Add the findings of an earlier probe of the same script."""
-    if known:
-        path = folder / "result.json"
-        result = json.loads(path.read_text())
-        result["findings"] = Findings(map(finding_from_json, (*result["findings"], *known))).to_json()["findings"]
-        path.write_text(json.dumps(result, sort_keys=True))
 
 
 def _kept(cache: BuildCache, digest: str, partial: Path | None) -> Path | None:

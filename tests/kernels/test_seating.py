@@ -184,7 +184,7 @@ def test_drift_comes_together_with_the_other_breaches(kernel: Build123dKernel, c
     assert "9 mm off the axis" in str(caught.value)
 
 
-def test_a_second_build_is_a_hit_and_other_numbers_are_not_probed_again(
+def test_a_second_build_is_a_hit_and_a_part_that_follows_its_dimensions_is_not_probed_again(
     kernel: Build123dKernel, cache: BuildCache, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     probes: list[bool] = []
@@ -195,16 +195,21 @@ def test_a_second_build_is_a_hit_and_other_numbers_are_not_probed_again(
         return build(self, *arguments, probe=probe, **named)
 
     monkeypatch.setattr(Build123dKernel, "build", counted)
-    dead = script().replace(b"w = part.dimensions['width']", b"w = 60.0")
-
-    first = built(plan(), dead, kernel, cache)
-    again = built(plan(), dead, kernel, cache)
-    wider = built(plan(width=70), dead, kernel, cache)
+    first = built(plan(), script(), kernel, cache)
+    again = built(plan(), script(), kernel, cache)
+    wider = built(plan(width=70), script(), kernel, cache)
 
     assert probes == [True, False]
     assert [first[0].cached, again[0].cached, wider[0].cached] == [False, True, False]
-    assert first[2].codes == again[2].codes == wider[2].codes == ("W_DIMENSION_UNUSED",)
+    assert first[2].codes == again[2].codes == wider[2].codes == ()
     assert again[0].solid.mesh.digest == first[0].solid.mesh.digest
+
+
+def test_a_dimension_without_effect_at_one_number_may_have_one_at_another(kernel: Build123dKernel, cache: BuildCache) -> None:
+    capped = script().replace(b"w = part.dimensions['width']", b"w = min(part.dimensions['width'], 60.0)")
+
+    for width, codes in ((90, ("W_DIMENSION_UNUSED",)), (50, ()), (80, ())):  # once it has one, the script is known to use it
+        assert built(plan(width=width), capped, kernel, cache)[2].codes == codes
 
 
 def test_a_failed_build_leaves_its_solids_in_the_cache_but_no_hit(kernel: Build123dKernel, cache: BuildCache) -> None:
