@@ -26,7 +26,9 @@ from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 
-SENT_BACK: Final = frozenset({"W_CONNECTOR_DRIFT", "W_CONNECTOR_FEATURE"})  # warnings about a part that its author must mend
+SENT_BACK: Final = frozenset(
+    {"W_CONNECTOR_DRIFT", "W_CONNECTOR_FEATURE", "W_PART_SCALE"}
+)  # warnings about a part that its author must mend
 CALLS_AT_ONCE: Final = 8  # parts requested in parallel; a model's answer takes minutes, and providers limit the rate
 
 

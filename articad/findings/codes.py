@@ -84,6 +84,9 @@ CODES: dict[str, Code] = {
         "A dimension is thinner than anything that is made, or far longer than all others of the plan.",
         "Lengths are millimetres; were metres, inches or micrometres meant?",
     ),
+    "W_DIMENSION_SIGN": Code(
+        "plan", "design", "A dimension that is named as a size is negative.", "Make it positive, or name a place as one, such as hole_z."
+    ),
     "E_NOT_SUPPORTED": Code(
         "plan", "design", "The plan is valid, but this version cannot solve it yet.", "Use a supported joint type or structure."
     ),
@@ -355,6 +358,12 @@ CODES: dict[str, Code] = {
         "design",
         "No script built the bore, shaft or face that a connector's kind orders.",
         "Describe the feature at the connector, or give the connector the kind 'frame'.",
+    ),
+    "W_PART_SCALE": Code(
+        "build",
+        "code",
+        "Several dimensions of a part are far longer than the part itself.",
+        "Build the part in millimetres, with the dimensions as they are given.",
     ),
     "W_CONNECTOR_FEATURE": Code(
         "build",

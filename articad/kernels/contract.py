@@ -84,20 +84,38 @@ def _envelope_findings(name: str, envelope: Sequence[float] | None, bbox: FloatA
 
 
 def dimension_findings(target: ResolvedPart, bbox: FloatArray) -> Iterator[Finding]:
-    """Yield W_SCALE for each length among the dimensions that is far longer than the part: it is probably in another unit."""
+    """Yield what is wrong with the size of a part beside its dimensions.
+
+    One length far longer than the part is probably in another unit (W_SCALE, a fault of the plan). If several are, then the part is:
+    its script builds in another unit (W_PART_SCALE).
+    """
     diagonal = float(np.linalg.norm(bbox[1] - bbox[0]))
-    for name, value in target.dimensions.items():
-        if not name.endswith(("_deg", "_count")) and abs(value) > LONGEST_OF_PART * diagonal > 0.0:
-            yield _finding(
-                "W_SCALE",
-                target.name,
-                f"Dimension {name!r} of {target.name} is {value:.6g} mm, but the part is only {diagonal:.4g} mm across.",
-                f"Lengths are millimetres: were micrometres given? Then it is {value / 1000.0:.6g}.",
-                dimension=name,
-                value=abs(float(value)),
-                limit=LONGEST_OF_PART * diagonal,
-                unit="mm",
-            )
+    lengths = {name: float(value) for name, value in target.dimensions.items() if not name.endswith(("_deg", "_count"))}
+    long = {name: value for name, value in lengths.items() if abs(value) > LONGEST_OF_PART * diagonal > 0.0}
+    if len(set(long.values())) > 1:
+        longest = max(long, key=lambda name: abs(long[name]))
+        yield _finding(
+            "W_PART_SCALE",
+            target.name,
+            f"{target.name} is only {diagonal:.4g} mm across, but {len(long)} of its dimensions are far longer, {longest!r} "
+            f"{long[longest]:.6g} mm.",
+            "Build the part in millimetres, with the dimensions as they are given: was it scaled to inches or metres?",
+            value=diagonal,
+            limit=abs(long[longest]) / LONGEST_OF_PART,
+            unit="mm",
+        )
+        return
+    for name, value in long.items():
+        yield _finding(
+            "W_SCALE",
+            target.name,
+            f"Dimension {name!r} of {target.name} is {value:.6g} mm, but the part is only {diagonal:.4g} mm across.",
+            f"Lengths are millimetres: were micrometres given? Then it is {value / 1000.0:.6g}.",
+            dimension=name,
+            value=abs(value),
+            limit=LONGEST_OF_PART * diagonal,
+            unit="mm",
+        )
 
 
 def read_connectors(brief: Json, entries: object, findings: list[Finding]) -> dict[str, Connector]:

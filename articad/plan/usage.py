@@ -37,6 +37,7 @@ _CHIRAL = re.compile(
 )
 _SIDE = re.compile(r"(?:\b|_)(left|right)(?:\b|_)", re.IGNORECASE)
 _CLEARANCE = re.compile(r"clearance|play|gap|slack|tolerance|allowance|offset")
+_SIZE = re.compile(r"(?:^|_)(?:radius|diameter|length|width|height|depth|thickness|thick|wide|bore|hole|wall|size|pitch)$")
 _SAME = 1e-9  # rad or mm: limits computed to be the same are the same
 
 Ends = dict[tuple[str, str], list[str]]
@@ -279,14 +280,19 @@ def _densities(draft: Draft) -> list[Finding]:
 
 
 def _dimensions(draft: Draft) -> list[Finding]:
-    """Find lengths among the dimensions that are probably in another unit: too thin to be made, or far longer than all others."""
+    """Find sizes with the wrong sign, and lengths that are probably in another unit: too thin to be made, or far longer than all others."""
     lengths = [
         (abs(value), part, name)
         for part, dimensions in draft.dimensions.items()
         for name, value in dimensions.items()
         if not name.endswith(("_deg", "_count")) and math.isfinite(value)
     ]
-    found = []
+    found = [
+        _negative(part, name, value)
+        for part, dimensions in draft.dimensions.items()
+        for name, value in dimensions.items()
+        if _SIZE.search(name) and value < -NOISE_MM
+    ]
     for length, part, name in lengths:
         least = LEAST_CLEARANCE_MM if _CLEARANCE.search(name) else THINNEST_MM
         if NOISE_MM < length < least:
@@ -302,6 +308,19 @@ def _dimensions(draft: Draft) -> list[Finding]:
             hint = f"Lengths are millimetres: were micrometres given? Then it is {longest / 1000.0:.6g}."
             found.append(_dimension_finding(part, name, message, hint, value=longest, limit=LONGEST_SHARE * next_longest))
     return found
+
+
+def _negative(part: str, name: str, value: float) -> Finding:
+    return Finding(
+        code="W_DIMENSION_SIGN",
+        where=f"parts.{part}.dimensions.{name}",
+        message=f"Dimension {name!r} of {part} is {value:.6g} mm, but a size is positive.",
+        hint=f"Make it {-value:.6g}; or name a place as one, such as {name}_z.",
+        parts=(part,),
+        value=float(value),
+        limit=0.0,
+        unit="mm",
+    )
 
 
 def _dimension_finding(part: str, name: str, message: str, hint: str, *, value: float, limit: float) -> Finding:

@@ -17,7 +17,18 @@ PLACE: Final = frozenset(
     | {"W_CONNECTOR_FEATURE"}
 )
 SIZE: Final = frozenset(
-    {"E_SCALE", "W_SCALE", "E_ENVELOPE", "E_NOT_ONE_SOLID", "E_INVALID_SOLID", "E_EMPTY_SOLID", "E_SCRIPT_ERROR", "E_NOT_EDITABLE"}
+    {
+        "E_SCALE",
+        "W_SCALE",
+        "W_PART_SCALE",
+        "W_DIMENSION_SIGN",
+        "E_ENVELOPE",
+        "E_NOT_ONE_SOLID",
+        "E_INVALID_SOLID",
+        "E_EMPTY_SOLID",
+        "E_SCRIPT_ERROR",
+        "E_NOT_EDITABLE",
+    }
 )
 CLASH: Final = frozenset({"E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FIT_TIGHT", "E_FIT_CONTACT"})
 APART: Final = frozenset({"E_FLOATING", "E_NOT_TOUCHING", "E_FIT_LOOSE", "E_FIT_CONTACT", "W_FIT_NOMINAL"})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from articad.errors import BuildError, ContractError
 from articad.findings import Findings
 from articad.geometry.part import Part
 from articad.kernels.build123d import Build123dKernel
+from articad.kernels.contract import dimension_findings
 from articad.kernels.kernel import BuildCache, BuiltPart, build_part, mirror_part, realise
 from articad.kernels.parts import build_parts
 from articad.plan.resolve import ResolvedPlan, resolve
@@ -234,6 +236,19 @@ def test_a_mirror_image_is_kept_beside_its_source(kernel: Build123dKernel, cache
     assert image.folder == again.folder
     assert image.solid.bbox == pytest.approx(np.array([[-WIDTH, 0, 0], [0, 4, 40]]))
     assert image.connectors["latch"].frame.allclose(source.connectors["latch"].mirrored(S).frame)
+
+
+@pytest.mark.parametrize("by", [1 / 25.4, 1e-3])
+def test_one_dimension_far_longer_than_the_part_is_the_plans_fault_and_several_are_the_scripts(by: float) -> None:
+    gate = plan().parts["gate"]
+    box = np.array([[0, 0, 0], [WIDTH, 4, 40]])
+
+    def codes(bbox: Any, **dimensions: float) -> list[tuple[str, str | None]]:
+        return [(one.code, one.route) for one in dimension_findings(replace(gate, dimensions=dimensions), bbox)]
+
+    assert codes(box, width=WIDTH, height=40, swing_deg=720, slat_count=900) == []
+    assert codes(box, width=WIDTH, height=40 / by) == [("W_SCALE", "design")]
+    assert codes(box * by, width=WIDTH, height=40, depth=4) == [("W_PART_SCALE", "code")]
 
 
 def test_all_parts_of_a_plan_are_built(kernel: Build123dKernel, cache: BuildCache) -> None:

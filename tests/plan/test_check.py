@@ -176,6 +176,14 @@ CASES = [
         300000,
         15000,
     ),
+    Case(
+        "W_DIMENSION_SIGN",
+        chest_with(lambda p: part(p, "box").update(dimensions={"width": "width", "wall_depth": -6, "wall_z": -6})),
+        "parts.box.dimensions.wall_depth",
+        "Make it 6; or name a place as one",
+        -6,
+        0,
+    ),
     Case("E_FRICTION", chest_with(lambda p: p["materials"][0].update(friction=-0.1)), "materials.wood.friction", "at least 0", -0.1),
     Case(
         "E_ENVELOPE_VALUE",
