@@ -142,7 +142,7 @@ def about_fits(rows: Sequence[Json]) -> Statement:
     unchecked = verdicts["not_checked"]
     wrong = len(rows) - len(held) - unchecked
     fits = _counted(len(rows), "fit")
-    how = f"{certified} certified over the motion" if certified else "none certified over the motion"
+    how = f"{certified or 'none'} certified while {'its joint moves' if certified == 1 else 'their own joints move'}"
     if wrong:
         kinds = ", ".join(f"{count} {verdict}" for verdict, count in sorted(verdicts.items()) if verdict not in ("ok", "not_checked"))
         return Statement(f"{wrong} of {fits} wrong", f"Fits: {wrong} of {len(rows)} wrong ({kinds}).", "bad")
