@@ -151,6 +151,11 @@ class Declared:
         return tuple(name for name in self.by_name if name not in carried)
 
     @cached_property
+    def rigid_groups(self) -> dict[str, tuple[str, ...]]:
+        """Names of the links that fixed joints connect with each link, itself included."""
+        return {name: names for names in self.rigid.sets() for name in names}
+
+    @cached_property
     def rigid(self) -> Groups:
         """Links that fixed joints make one body."""
         groups = Groups(self.by_name)

@@ -24,9 +24,9 @@ from articad.errors import ArticadError, ReadError
 from articad.findings import Finding, Findings
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
-from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
+from articad.importers.reading import Folder, read_xml
 from articad.importers.referenced_files import package_of, require_closed
-from articad.importers.urdf import read_urdf
+from articad.importers.urdf import read_urdf, require_bounded
 from articad.runs.run import REQUEST_FILE
 from articad.simulation.loading import ENGINES, Loading, load_in_all
 
@@ -157,8 +157,7 @@ def _urdf(path: Path, choices: AuditOptions, found: _Found) -> None:
     document = read_xml(path)
     if document.tag != "robot":
         raise ReadError(f"{path}: The root element is <{document.tag}>, not <robot>.", path=str(path), findings=[_no_robot(path, document)])
-    if (count := max(len(document.findall("link")), len(document.findall("joint")))) > MAX_LINKS:
-        raise unreadable(path, "", f"It has {count} links or joints; the maximum is {MAX_LINKS}.")
+    require_bounded(document, path)
     root = choices.root or package_of(path)
     text = UrdfText(MeshReferences(Folder.of(path, root)))
     found.declared = text.declared(document, path)

@@ -71,7 +71,7 @@ def impossible_mass(declared: Declared) -> Iterator[Finding]:
     for link in declared.links:
         if link.inertial is None or link.inertial.mass is None or link.inertial.mass > 0:
             continue
-        heavy = any((_mass(declared.by_name[name]) or 0.0) > 0 for name in _group(declared, link.name) if name != link.name)
+        heavy = any((_mass(declared.by_name[name]) or 0.0) > 0 for name in declared.rigid_groups[link.name] if name != link.name)
         if link.inertial.mass == 0 and (link.name not in moving or heavy):
             continue  # some files write zero for "none"
         yield Finding(
@@ -254,15 +254,11 @@ def _mass(link: DeclaredLink) -> float | None:
     return None if link.inertial is None else link.inertial.mass
 
 
-def _group(declared: Declared, name: str) -> tuple[str, ...]:
-    return next(names for names in declared.rigid.sets() if name in names)
-
-
 def _shared(declared: Declared, name: str) -> bool:
     """True if a fixed neighbour has no mass of its own: then this link's mass may include it."""
     return any(
         declared.by_name[other].shapes and _mass(declared.by_name[other]) in {None, 0.0}
-        for other in _group(declared, name)
+        for other in declared.rigid_groups[name]
         if other != name
     )
 

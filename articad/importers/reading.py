@@ -22,6 +22,7 @@ from articad.importers.packages import environment_folders, find_package
 
 MAX_XML_BYTES = 64 << 20  # a robot of 10,000 links is 20 MB; more is a mistake or an attack
 MAX_LINKS = 10_000
+MAX_SHAPES = 2_000  # shapes of one link
 MAX_ELEMENTS = 1_000_000  # of a file; a robot of 10,000 links has 200,000
 MAX_ATTRIBUTES = 200  # of one element; the parser compares each with each
 MAX_DEPTH = 50_000  # nesting of elements: a chain of MAX_LINKS bodies, twice

@@ -20,7 +20,9 @@ MAX_FILES = 100  # largest number of files that include each other
 MAX_COPIES = 1000  # largest number of copies by <replicate>, <composite> and the like, nested ones multiplied
 MAX_COPIED = 200_000  # elements of all copies
 MAX_POINTS = 1 << 24  # of textures and height fields that an engine makes: 4096 x 4096
+MAX_RESERVED = 1 << 20  # keyframes and user numbers that <size> reserves
 MAX_NAMES = 100_000  # largest number of places in which named files may lie
+_IGNORED_SIZES = frozenset({"njmax", "nconmax", "nstack"})  # old names of memory, which the simulation bounds
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
 
 Named = list[tuple[str, Path, int]]  # the name, the file that contains it, and the line
@@ -92,6 +94,8 @@ class _Closure:
             raise unreadable(
                 path, "", f"Its textures and height fields have {self._points:g} points without a file; the maximum is {MAX_POINTS}."
             )
+        for element in document.iter("size"):
+            _require_few(element, path)
         for element in _read_by_engines(document):
             names = [(value, path, element.sourceline) for name, value in element.attrib.items() if name.startswith("file") and value]
             named += names
@@ -159,6 +163,22 @@ def _copies(document: Any, path: Path, times: int) -> dict[Any, int]:
         if count > MAX_COPIES:
             raise unreadable(path, f"line {element.sourceline}", f"It requests {count} copies; the maximum is {MAX_COPIES}.")
     return copies
+
+
+def _require_few(element: Any, path: Path) -> None:
+    """Refuse a size element that makes an engine reserve too much.
+
+    Raises:
+        ReadError: If one of its counts is too large; what is not a number is left to the engine to refuse.
+    """
+    for name, text in element.attrib.items():
+        if name.startswith("n") and name not in _IGNORED_SIZES:
+            try:
+                count = float(text)
+            except ValueError:
+                continue
+            if not count <= MAX_RESERVED:
+                raise unreadable(path, f"line {element.sourceline}", f"{name} is {text[:40]}; the maximum is {MAX_RESERVED}.")
 
 
 def _points(element: Any) -> float:

@@ -24,7 +24,7 @@ from articad.geometry.shapes import box, cylinder, sphere
 from articad.geometry.shapes import capsule as capsule_mesh
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
-from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, parse_xml, read_xml, unreadable
+from articad.importers.reading import MAX_LINKS, MAX_SHAPES, MM_PER_M, Folder, color_text, parse_xml, read_xml, unreadable
 from articad.importers.records import unedited
 from articad.importers.referenced_files import package_of
 from articad.importers.srdf import kept_semantics, semantics_beside
@@ -157,10 +157,26 @@ def _lacking(document: Any) -> list[tuple[int, str]]:
     return sorted(found)
 
 
+def require_bounded(document: Any, path: Path) -> None:
+    """Refuse a URDF document with more links, joints, shapes of a link or elements than are read, before anything reads it.
+
+    Raises:
+        ReadError: Naming the number and the maximum.
+    """
+    count = max(len(document.findall("link")), len(document.findall("joint")))
+    shapes = max((len(link) for link in document.iterfind("link")), default=0)
+    for number, most, what in (
+        (count, MAX_LINKS, "links or joints"),
+        (shapes, MAX_SHAPES, "elements in one link"),
+        (len(document), 8 * MAX_LINKS, "elements"),
+    ):
+        if number > most:
+            raise unreadable(path, "", f"It has {number} {what}; the maximum is {most}.")
+
+
 def _strip(document: Any, path: Path) -> list[Finding]:
     """Remove elements of other programs, and shapes without a mesh; return findings about the losses."""
-    if len(document) > 8 * MAX_LINKS:
-        raise unreadable(path, "", f"It has {len(document)} elements; the maximum is {8 * MAX_LINKS}.")
+    require_bounded(document, path)
     findings = []
     for element in list(document):
         if element.tag not in {"link", "joint", "material"}:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from articad.auditing.examine import audit_file
 from articad.errors import ReadError
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
@@ -104,7 +105,34 @@ def test_points_of_textures_and_height_fields_are_counted_before_they_are_made(
         read_mjcf(path)
 
 
-@pytest.mark.parametrize("count", [3000, 20_000])
+@pytest.mark.parametrize("size", ["nkey", "nuserdata", "nuser_body"])
+def test_numbers_that_an_engine_reserves_are_counted_before(size: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.importers.mjcf.compiled_mjcf", never)
+    path = tmp_path / "a.xml"
+    path.write_text(f'<mujoco><size {size}="1000000000"/><worldbody>{GEOM}</worldbody></mujoco>')
+    with pytest.raises(ReadError, match=rf"{size} is 1000000000; the maximum is"):
+        read_mjcf(path)
+
+
+@pytest.mark.parametrize(
+    ("inside", "reason"),
+    [
+        ("<material name='m'/>" * 80_001 + "<link name='a'/>", "elements; the maximum is 80000"),
+        ("<link name='a'>" + "<visual/>" * 2001 + "</link>", "2001 elements in one link; the maximum is 2000"),
+    ],
+)
+def test_a_file_beyond_the_bounds_is_not_given_to_engines(
+    inside: str, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("articad.auditing.examine.load_in_all", never)
+    path = tmp_path / "a.urdf"
+    path.write_text(f"<robot name='r'>{inside}</robot>")
+    assert reason in str(audit_file(path).findings)
+    with pytest.raises(ReadError, match=reason):
+        read_urdf(path)
+
+
+@pytest.mark.parametrize("count", [3000, 10_000])
 def test_loops_are_counted_before_their_equations_are_made(count: int, tmp_path: Path) -> None:
     joint = '<joint name="{}" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint>'
     path = tmp_path / "a.urdf"
