@@ -585,10 +585,7 @@ class Checker:
         fits &= np.abs(np.concatenate([r, (J @ S.swapaxes(1, 2)).reshape(len(r), -1)], axis=1)).max(1, initial=0.0) < (
             ROUNDING if count else REST
         )
-        need(
-            fits.all(),
-            f"{', '.join(names[:count])} cannot be at {guess[~fits][:1, :count].round(9).tolist()}, or that solution is not unique",
-        )
+        need(fits.all(), f"{', '.join(names[:count])} cannot be at {guess[~fits][:1, :count].round(9).tolist()}, or not only there")
         S, Q = S * half[..., None], np.zeros((len(guess), count**2, len(names)))
 
         def powers(t: Any) -> Any:  # t_k t_l / 2
