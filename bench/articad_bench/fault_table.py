@@ -22,7 +22,7 @@ A good product, one mistake made by rule, and what the pipeline finds of it with
 place drawn with a fixed seed. [The how-to](../how-to/benchmark.md#plant-faults) says how to run it.
 
 - **found in**: the step that found something: the check of the *plan*, the *build* with the contract of each part, the *evidence* (overlaps and fits at rest,
-  samples of each joint's range), or the full *sampled* check of `articad build --verify sampled`. An error ends the trial, and a warning that a run sends back to its author; the *sampled* check follows if nothing was found before.
+  samples of each joint's range), or the full *sampled* check of `articad build --verify sampled`. An error ends the trial, as does a warning that a run sends back to its author; the *sampled* check follows if nothing was found before.
 - **same**: nothing is found because the product is the same: parts, masses, places at rest and in motion, limits, couplings and fits. Such cases are not counted.
 - **escaped**: no error and no warning, although the product is another one.
 - **named**: a finding names a part or joint of the mistake, and its code is one of those that state this cause. An escape is not named.
