@@ -41,10 +41,10 @@ Tell = Callable[[AssemblyPlan | None, Findings], None]
 def response_schema(*, changes: bool = False) -> dict[str, Any]:
     """Return the JSON schema of a reply: the plan's top level only.
 
+    Providers differ in the depth and the unions that they accept; the prompt describes the whole form, and `check_plan` checks it.
+
     Args:
         changes: Whether changes to a plan are accepted in place of a whole one.
-
-    Providers differ in the depth and the unions that they accept; the prompt describes the whole form, and `check_plan` checks it.
     """
     text, items = {"type": "string"}, {"type": "array", "items": {"type": "object"}}
     properties = {

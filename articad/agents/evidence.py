@@ -81,7 +81,7 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
     if all(finding.stage == "fit" for finding in checks.findings.errors):  # what overlaps at rest overlaps in motion too
         for joint in assembly.mechanism.driving_joints:
             checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
-    checks = replace(checks, findings=addressed(diagnose(scene, assembly.mechanism.tree, checks.findings), assembly))
+    checks = replace(checks, findings=addressed(diagnose(scene, assembly.mechanism.tree, checks.findings), assembly, scene))
     return Evidence(checks, _sizes(assembly))
 
 

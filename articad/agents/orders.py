@@ -23,7 +23,7 @@ from articad.geometry.faces import Face
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.resolve import ResolvedPlan
-from articad.realisation.bores import TILT, along
+from articad.realisation.bores import TILT, along, at_height
 from articad.realisation.sides import sides
 
 __all__ = ["addressed", "source_of"]
@@ -48,19 +48,19 @@ class _Round(NamedTuple):
     hollow: bool
 
 
-def addressed(findings: Iterable[Finding], assembly: Assembly) -> Findings:
+def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene) -> Findings:
     """Send each error about two parts to whoever made it, where the parts prove it; others keep their route.
 
     Args:
         findings: Of an examination of the assembly.
         assembly: A product that was built from a plan.
+        scene: The assembly's scene.
     """
     several = tuple(findings)
     pairs = {frozenset(finding.parts) for finding in several if finding.code in _CODES and len(finding.parts) == 2}
     if assembly.resolved is None or not pairs:
         return Findings(several)
     joints = [joint for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs and joint.type in _ROUND]
-    scene = assembly.scene()
     surfaces = {joint.name: _mating(scene, joint) for joint in joints}
     departed = _departed(assembly, assembly.resolved, set().union(*pairs), surfaces)
     return Findings(_addressed(finding, assembly.resolved, departed, joints, surfaces) for finding in several)
@@ -141,9 +141,7 @@ def _is_about(face: Face) -> bool:
     """Return whether a face is a cylinder about the z axis."""
     if face.kind != "cylinder" or np.hypot(face.axis[0], face.axis[1]) > TILT:
         return False
-    height = sum(along(face)) / 2
-    at = face.point + (height - face.point[2]) / face.axis[2] * face.axis
-    return float(np.hypot(at[0], at[1])) < _ON_AXIS_MM
+    return float(np.linalg.norm(at_height(face, sum(along(face)) / 2))) < _ON_AXIS_MM
 
 
 def _is_stated(surface: _Round, dimensions: Mapping[str, float]) -> bool:

@@ -13,6 +13,7 @@ from articad.geometry.faces import Face, faces_of
 from articad.geometry.mesh import TriMesh
 from articad.interference.body import winding_numbers
 from articad.kernels.contract import DRIFT_ANGLE, DRIFT_RADIAL_MM
+from articad.realisation.bores import at_height
 
 __all__ = ["feature_findings"]
 
@@ -58,19 +59,13 @@ def _findings(part: str, connectors: Mapping[str, Connector], mesh: TriMesh) -> 
 def _is_round(face: Face) -> bool:
     """Return whether a face goes round the z axis, or may do so."""
     if face.kind == "cylinder":
-        return _is_upright(face) and float(np.hypot(*_at_origin(face))) < DRIFT_RADIAL_MM
+        return _is_upright(face) and float(np.linalg.norm(at_height(face, 0.0))) < DRIFT_RADIAL_MM
     points = face.corners.reshape(-1, 3)[:, :2]
     return face.kind == "other" and bool((points.min(axis=0) <= 0.0).all() and (points.max(axis=0) >= 0.0).all())
 
 
 def _is_upright(face: Face) -> bool:
     return float(np.hypot(face.axis[0], face.axis[1])) < DRIFT_ANGLE
-
-
-def _at_origin(face: Face) -> tuple[float, float]:
-    """Return where a cylinder's axis passes through z = 0 [mm]."""
-    at = face.point - face.point[2] / face.axis[2] * face.axis
-    return float(at[0]), float(at[1])
 
 
 def _is_seat(face: Face) -> bool:

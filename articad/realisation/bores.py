@@ -11,7 +11,7 @@ from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.realisation.sides import sides
 
-__all__ = ["TILT", "Bore", "along", "bore_of", "offset"]
+__all__ = ["TILT", "Bore", "along", "at_height", "bore_of", "offset"]
 
 TILT = 1e-3  # rad: axes that differ by less are parallel
 _TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.SLIDER)
@@ -64,10 +64,10 @@ def along(face: Face) -> tuple[float, float]:
 def offset(a: Face, b: Face) -> float:
     """Return the distance of the axes of two cylinders about z [mm], in the middle of the second."""
     height = sum(along(b)) / 2
-    return float(np.linalg.norm(_at(a, height) - _at(b, height)))
+    return float(np.linalg.norm(at_height(a, height) - at_height(b, height)))
 
 
-def _at(face: Face, height: float) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def at_height(face: Face, height: float) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     """Return the point of a cylinder's axis at a height above the origin, `(2,)` [mm]."""
     return np.asarray((face.point + (height - face.point[2]) / face.axis[2] * face.axis)[:2])
 
@@ -76,4 +76,4 @@ def _is_about_axis(face: Face) -> bool:
     """Return whether a face is a cylinder parallel to z that the z axis passes through."""
     if face.kind != "cylinder" or np.hypot(face.axis[0], face.axis[1]) > TILT:
         return False
-    return float(np.linalg.norm(_at(face, sum(along(face)) / 2))) < face.radius
+    return float(np.linalg.norm(at_height(face, sum(along(face)) / 2))) < face.radius
