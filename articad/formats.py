@@ -12,6 +12,7 @@ from articad.assembly import Assembly
 from articad.errors import ExportError, ReadError
 from articad.export.bundle import Bundle
 from articad.export.freecad import write_freecad
+from articad.export.freecad_split import is_part_file
 from articad.export.gltf import write_glb
 from articad.export.mjcf import write_mjcf
 from articad.export.plan import write_plan
@@ -202,7 +203,9 @@ def _require_free(bundle: Bundle, path: Path) -> None:
     texts = {other: other.read_bytes() for other in beside if other.is_file()}
     for name in changed:
         there = path.parent / name
-        if not there.read_bytes().startswith(MADE_BY_ARTICAD):
+        if there.suffix == ".FCStd" and not is_part_file(there.read_bytes()):
+            raise _replaces(there, f"{there} is another document, which articad did not write.", hint)
+        if there.suffix != ".FCStd" and not there.read_bytes().startswith(MADE_BY_ARTICAD):
             raise _replaces(there, f"{there} is another mesh, which articad did not write.", hint)
         if user := next((other for other, text in texts.items() if name.encode() in text), None):
             raise _replaces(there, f"{there} is another mesh, which {user.name} names.", hint)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from articad.commands.command import argument, command
-from articad.commands.options import FORMATS, SANDBOX, formats
+from articad.commands.options import FORMATS, SANDBOX, SPLIT, formats
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     argument(
         "--process", choices=["fdm", "sla", "sls"], default="fdm", help="the printing process for 3MF: gaps are checked against it (fdm)"
     ),
+    SPLIT,
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
@@ -62,6 +63,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         "ros2_control": ros,
         "process": options.process,
         "keep_frames": options.keep_frames,
+        "split": options.split,
     }
     exports: dict[str, Report] = {}
     with terminal.progress("Exporting", total=len(options.formats)) as tell:
@@ -98,13 +100,15 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         action="store_true",
         help="for URDF: give every link its part's frame, with an empty link and a fixed joint where a joint's axis misses its origin",
     ),
+    SPLIT,
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
     from articad.formats import convert, format_of
 
     target = Path(options.target)
-    more: dict[str, Any] = {"keep_frames": True} if options.keep_frames else {}  # a format without link frames refuses it
+    given = {"keep_frames": options.keep_frames, "split": options.split}
+    more: dict[str, Any] = {name: True for name, value in given.items() if value}  # a format without the option refuses it
     read = {"root": options.root, "fuse": options.fuse, "srdf": options.srdf}
     with terminal.progress("Converting"):
         assembly, bundle = convert(options.source, target, strict=options.strict, **read, **more)

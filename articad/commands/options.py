@@ -82,6 +82,7 @@ FORCE = argument("--force", action="store_true", help="rebuild every part, whate
 EXPORT = argument("--export", metavar="FORMATS", dest="formats", type=formats, default=USUAL, help="formats to write (urdf,mjcf)")
 PICTURES = argument("--no-pictures", dest="pictures", action="store_false", help="draw neither parts nor motion, and write no page")
 SET = argument("--set", metavar="NAME=VALUE", dest="parameters", type=parameter, action="append", default=[], help="replace a parameter")
+SPLIT = argument("--split", action="store_true", help="for FreeCAD: write one file for each part, and an assembly that links to them")
 BUILD_ARGUMENTS = (
     OUT,
     argument("--kernel", choices=["build123d", "freecad"], default=None, help="the kernel that builds part scripts (the plan's choice)"),

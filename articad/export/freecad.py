@@ -19,6 +19,8 @@ from articad.export.freecad_file import Appearance, normalised
 from articad.export.freecad_job import Job
 from articad.export.freecad_look import verify
 from articad.export.freecad_native import document
+from articad.export.freecad_split import content_of_files
+from articad.export.freecad_split import split as divided
 from articad.export.losses import refuse
 from articad.export.product import of_the_product
 from articad.findings import Finding, Findings
@@ -35,18 +37,19 @@ _PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that F
 
 
 @of_the_product
-def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD | None = None) -> Bundle:
+def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD | None = None, split: bool = False) -> Bundle:
     """Write an assembly as a FreeCAD 1.0 document; FreeCAD 1.1 opens it as well.
 
     Args:
         assembly: The assembly, written at rest.
         strict: Refuse what FreeCAD cannot hold.
+        split: Write one file for each part, and one for the parameters, in a folder beside the document, which links to them.
         freecad: The FreeCAD that writes it; by default the installed one. Without FreeCAD, the document is written as by
             `write_freecad_alone`.
 
     Returns:
-        One file, `<name>.FCStd`, the same bytes each time on the same FreeCAD. It was opened in FreeCAD again: the findings name
-        each part whose shape is not the assembly's, and say whether FreeCAD's solver agrees with the placements.
+        One file, `<name>.FCStd`, the same bytes each time on the same FreeCAD, and with `split` the files in `<name>_parts`. It was
+        opened in FreeCAD again: the findings name each part whose shape is not the assembly's, and say whether FreeCAD's solver agrees with the placements.
 
     Raises:
         UnrepresentableError: If `strict` and something is lost.
@@ -55,7 +58,7 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
     try:
         freecad = freecad or freecad_install.find()
     except KernelUnavailableError:
-        return write_freecad_alone(assembly, strict=strict)
+        return write_freecad_alone(assembly, strict=strict, split=split)
     with scratch.folder("freecad") as name:
         folder = Path(name)
         job = Job(assembly, folder)
@@ -69,20 +72,21 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
         report = json.loads((folder / "report.json").read_text())
         content = (folder / "assembly.FCStd").read_bytes()
     look = Appearance(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"], tuple(report["tips"]))
-    written = normalised(content, look)
-    return Bundle({f"{job.name}.FCStd": written}, job.losses, verify(written, assembly, freecad))
+    files = _files(job.name, content, look, split=split)
+    return Bundle(files, job.losses, verify(files, assembly, freecad))
 
 
 @of_the_product
-def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
+def write_freecad_alone(assembly: Assembly, *, strict: bool = False, split: bool = False) -> Bundle:
     """Write an assembly as a FreeCAD 1.0 document without FreeCAD: every shape as B-rep, the rest as `write_freecad` does.
 
     Args:
         assembly: The assembly, written at rest.
         strict: Refuse what FreeCAD cannot hold.
+        split: As for `write_freecad`.
 
     Returns:
-        One file, `<name>.FCStd`, the same bytes on every machine; a finding says that FreeCAD did not check it.
+        The files of `write_freecad`, the same bytes on every machine; a finding says that FreeCAD did not check it.
 
     Raises:
         UnrepresentableError: If `strict` and something is lost.
@@ -98,7 +102,16 @@ def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
         message="The document was written without FreeCAD: its shapes are B-rep, and FreeCAD's solver did not check it.",
         hint=f"{freecad_install.HOW_TO_GET}.",
     )
-    return Bundle({f"{job.name}.FCStd": normalised(content, look)}, job.losses, Findings([unseen]))
+    return Bundle(_files(job.name, content, look, split=split), job.losses, Findings([unseen]))
+
+
+def _files(name: str, content: bytes, look: Appearance, *, split: bool) -> dict[str, bytes]:
+    """Return the files of a document as it was written, the main one first."""
+    if not split:
+        return {f"{name}.FCStd": normalised(content, look)}
+    files = divided(content, f"{name}_parts")
+    written = content_of_files(files)
+    return {path or f"{name}.FCStd": normalised(held, look, written) for path, held in files.items()}
 
 
 def _failed(said: str, *, late: bool) -> ExportError:

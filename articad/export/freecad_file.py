@@ -17,7 +17,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from lxml import etree
 
-from articad.export.freecad_content import PROPERTY, content_of, packed_content
+from articad.export.freecad_content import PROPERTY, Content, content_of, packed_content
 from articad.geometry.mesh import TriMesh
 from articad.kernels.freecad_file import bounded, packed, settle, xml_parser
 
@@ -52,18 +52,19 @@ class Appearance:
     tips: Sequence[str] = ()
 
 
-def normalised(content: bytes, look: Appearance | None = None) -> bytes:
+def normalised(content: bytes, look: Appearance | None = None, written: Content | None = None) -> bytes:
     """Return a FreeCAD file with fixed dates, Uids and order, and with its appearance.
 
     Args:
         content: The file as FreeCAD wrote it.
         look: Its appearance; None omits GuiDocument.xml.
+        written: The content that its assembly stores; by default that of this file.
     """
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         files = {name: archive.read(name) for name in archive.namelist() if name not in ("GuiDocument.xml", "thumbnails/Thumbnail.png")}
     root = etree.fromstring(files["Document.xml"], xml_parser())
     settle(root)
-    _carry(root)
+    _carry(root, content_of(root) if written is None else written)
     types = {item.get("name"): item.get("type") for item in root.iterfind("Objects/Object")}
     if look is not None:
         _show(root, types, look)
@@ -72,9 +73,9 @@ def normalised(content: bytes, look: Appearance | None = None) -> bytes:
     return packed({name: bounded(data) if name.endswith(".brp") else data for name, data in files.items()})
 
 
-def _carry(root: etree._Element) -> None:
+def _carry(root: etree._Element, written: Content) -> None:
     """Store the content of the document in its assembly, so that the reader can find edits."""
-    content = packed_content(content_of(root))
+    content = packed_content(written)
     for row in root.iterfind(f"ObjectData/Object/Properties/Property[@name='{PROPERTY}']/String"):
         row.set("value", content)
 

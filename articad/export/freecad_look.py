@@ -16,6 +16,7 @@ import numpy as np
 
 from articad.aliases import Json
 from articad.connectors.se3 import SE3
+from articad.export.bundle import Bundle
 from articad.findings import Finding, Findings
 from articad.geometry.part import Part
 from articad.kernels import freecad_install
@@ -32,11 +33,11 @@ SOLVED_MM, SOLVED_RAD = 1e-6, 1e-8  # by which FreeCAD's solver may move a part
 _SECONDS, _SECONDS_A_PART = 120.0, 5.0
 
 
-def verify(content: bytes, assembly: Assembly, freecad: FreeCAD) -> Findings:
+def verify(content: bytes | Mapping[str, bytes], assembly: Assembly, freecad: FreeCAD) -> Findings:
     """Open a document in FreeCAD and compare what is there with the assembly.
 
     Args:
-        content: The document, `.FCStd`.
+        content: The document, `.FCStd`, or its files by path, the document itself first.
         assembly: What it is to hold, at rest.
         freecad: The FreeCAD that opens it.
 
@@ -62,16 +63,21 @@ def judged(report: Json, assembly: Assembly, freecad: FreeCAD) -> Findings:
 _WHEN = {"first": "as written", "again": "saved and opened again"}
 
 
-def looked(content: bytes, freecad: FreeCAD, *, parts: int) -> Json:
+def looked(content: bytes | Mapping[str, bytes], freecad: FreeCAD, *, parts: int) -> Json:
     """Return what FreeCAD finds in a document, as written and saved by FreeCAD again.
+
+    Args:
+        content: As for `verify`.
+        freecad: The FreeCAD that opens it.
+        parts: Number of parts, for the time that it may take.
 
     Raises:
         OSError: If FreeCAD ends without a report; the message is the last line of its output.
     """
     with scratch.folder("freecad") as name:
         folder = Path(name)
-        (folder / "it.FCStd").write_bytes(content)
-        (folder / "job.json").write_text(json.dumps({"file": "it.FCStd", "steps": [{"do": "verify"}]}))
+        main = Bundle({"it.FCStd": content} if isinstance(content, bytes) else content).write(folder)[0].name
+        (folder / "job.json").write_text(json.dumps({"file": main, "steps": [{"do": "verify"}]}))
         ended = freecad.run(PROGRAM, folder=folder, limits=FreeCADLimits(seconds=_SECONDS + _SECONDS_A_PART * parts))
         if not (folder / "report.json").is_file():
             raise OSError("it ran out of time" if ended.late else last_words(ended.said))

@@ -265,11 +265,11 @@ class _Model:
         if item.document.number(item.name, "ElementCount") > 0:
             self._misshapen(name, f"{item.name} is an array of links, which is not read.", "Make the links one by one.")
             return []
-        if not file or file not in item.document.archive.names:
-            return []
         try:
+            content = item.document.entry(file)
+            if content is None:
+                return []
             folder = Path(tempfile.mkdtemp(dir=_kept().name))
-            content = item.document.archive.read(file)
             solids, loose = self._reader.read_breps(content, name=name, T=T, deflection=self.deflection, folder=folder)
         except (ArticadError, BadArchiveError) as error:
             if "it holds no shape" in str(error):  # a body without features
@@ -287,10 +287,9 @@ class _Model:
 
     def _mesh(self, item: FreeCADObject, T: SE3, name: str) -> list[Shape]:
         file = item.document.value(item.name, "Mesh", "Mesh", "file")
-        if file not in item.document.archive.names or file is None:
-            return []
         try:
-            return [Shape(read_mesh_kernel(item.document.archive.read(file)), T)]
+            content = item.document.entry(file)
+            return [] if content is None else [Shape(read_mesh_kernel(content), T)]
         except (ArticadError, BadArchiveError) as error:
             self._misshapen(name, f"The mesh of {item.name} is left out: {str(error)[:200]}", "Repair it in FreeCAD.")
         return []

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from articad.connectors.se3 import SE3
-from articad.errors import ArticadError
+from articad.errors import ArticadError, ReadError
+from articad.export.freecad_split import join, listed
 from articad.files import read_file
 from articad.importers.reading import LARGEST_MM, MAX_XML_BYTES, Folder, color_text, parse_xml, unreadable
 from articad.kernels.archive import Archive, BadArchiveError
@@ -48,11 +49,41 @@ class FreeCADDocument:
             raise unreadable(path, "", f"It cannot be read: {error.strerror}.") from None
         except BadArchiveError as error:
             raise unreadable(path, "", f"It is not a FreeCAD file: {error}.") from None
+        self._files: dict[str, tuple[Archive, str]] = {}  # entries of other files
+        self._painted: dict[str, str] = {}  # colours of the objects of other files
+        self._index()
+
+    def _index(self) -> None:
         self.types = {item.get("name", ""): item.get("type", "") for item in self.root.iterfind("Objects/Object")}
         self.items = {item.get("name", ""): item for item in self.root.iterfind("ObjectData/Object")}
         self._properties = {
             name: {row.get("name"): row for row in item.iterfind("Properties/Property")} for name, item in self.items.items()
         }
+
+    def take(self, other: FreeCADDocument) -> None:
+        """Add the objects of a part's file, which articad divided from this one: both then read like one document.
+
+        Raises:
+            ReadError: If the file is not like the one that was written.
+        """
+        if None in (root.find(tag) for root in (self.root, other.root) for tag in ("Objects", "ObjectData")):
+            raise unreadable(other.path, "Document.xml", "It has no objects.")
+        self._painted |= other.colors()
+        for element in other.root.iter():
+            if (name := element.get("file")) in other.archive.names:
+                element.set("file", f"{other.path.stem}/{name}")
+                self._files[f"{other.path.stem}/{name}"] = (other.archive, name)
+        join(self.root, other.root, other.path.stem)
+        self._index()
+
+    def entry(self, name: str | None) -> bytes | None:
+        """Return a file in the archive of this document, or of one that it took, or None.
+
+        Raises:
+            BadArchiveError: If it cannot be unpacked.
+        """
+        archive, own = self._files.get(name or "", (self.archive, name or ""))
+        return archive.read(own) if own in archive.names else None
 
     def value(self, name: str, key: str, tag: str, attribute: str = "value") -> str | None:
         """Return an attribute of the first element of a tag in a property, or None."""
@@ -152,13 +183,13 @@ class FreeCADDocument:
 
     def colors(self) -> dict[str, str]:
         """Return "#rrggbb" by object, for objects whose colour a window of FreeCAD stored."""
+        found = dict(self._painted)
         if "GuiDocument.xml" not in self.archive.names:
-            return {}
+            return found
         try:
             root = parse_xml(self.archive.read("GuiDocument.xml", MAX_XML_BYTES), self.path)
         except BadArchiveError:
-            return {}
-        found = {}
+            return found
         for provider in root.iterfind("ViewProviderData/ViewProvider"):
             rows = {row.get("name"): row for row in provider.iterfind("Properties/Property")}
             kind = self.types.get(provider.get("name", ""), "")
@@ -240,6 +271,17 @@ class LinkedDocuments:
         self._root = root
         self.main = FreeCADDocument(path)
         self._read = {path.resolve(): self.main}
+        here = path.resolve().parent
+        for file in listed(self.main.root)[:MAX_FILES]:
+            try:
+                found = Folder((root or here).resolve(), here).find(file)
+            except ReadError as error:
+                if any(finding.code == "E_UNSAFE_PATH" for finding in error.findings):
+                    raise
+                continue  # whatever links to it is refused with its name
+            if found not in self._read:
+                self.main.take(FreeCADDocument(found))
+                self._read[found] = self.main
 
     def linked(self, item: FreeCADObject, key: str) -> FreeCADObject | None:
         """Return the object that a property links to, or None if it links to none.

@@ -177,24 +177,34 @@ def _verify(document: Any, _: Json) -> Json:
     """Recompute, measure, solve and save; then open what was saved and do the same again."""
     first = _measured(document)
     saved = str(Path("verified.FCStd").resolve())
+    for other in _linked(document):
+        other.save()
     document.saveAs(saved)
-    App.closeDocument(document.Name)
+    for name in list(App.listDocuments()):
+        App.closeDocument(name)
     again = App.openDocument(saved, True)
     return {"first": first, "again": _measured(again)}
+
+
+def _linked(document: Any) -> list[Any]:
+    """Return the other documents that FreeCAD opened, because this one links to them."""
+    return [other for other in App.listDocuments().values() if other.Name != document.Name]
 
 
 def _measured(document: Any) -> Json:
     """Return what stands in the document as it was opened, after a recompute, and after its joints are solved."""
     opened = {name: _shape_now(item) for name, item in _parts(document).items()}
-    for item in document.Objects:
+    objects = [item for held in (*_linked(document), document) for item in held.Objects]
+    for item in objects:
         item.touch()
-    document.recompute()
+    for held in (*_linked(document), document):
+        held.recompute()
     placed = {name: _seven(item.Placement) for name, item in _parts(document).items()}
     return {
         "opened": opened,
         "recomputed": {name: _shape_now(item) for name, item in _parts(document).items()},
         "placed": placed,
-        "invalid": [f"{item.Name} ({item.getStatusString()})" for item in document.Objects if "Invalid" in item.State],
+        "invalid": [f"{item.Name} ({item.getStatusString()})" for item in objects if "Invalid" in item.State],
         "solved": _solve(document, {}),
     }
 
