@@ -7,8 +7,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
+import manifold3d
+
+from articad.connectors.se3 import SE3
 from articad.export.contacts import ContactSearch, poses_in_motion
 from articad.export.convex import Pieces, as_it_is, manifold, pieces_of, whole_hull
 from articad.export.hulls import HullOverlap, Pair
@@ -95,8 +98,9 @@ def shape_model(assembly: Assembly, model: LoweredModel, kind: Collision, cache:
     if kind == "solid":
         return model
     cache = cache or BuildCache()
-    shaped = once(assembly, ("shaped", kind), lambda: {link.part.name: _found(link, kind, cache) for link in model.links})
-    features = [*model.features, *(feature for name, found in shaped.items() for feature in _features(name, kind, found))]
+    found: dict[Any, Pieces] = {}  # equal shapes share their pieces
+    shaped = once(assembly, ("shaped", kind), lambda: {link.part.name: _formed(link, kind, cache, found) for link in model.links})
+    features = [*model.features, *(feature for name, formed in shaped.items() for feature in _features(name, kind, formed))]
     links = tuple(_reshaped(link, shaped[link.part.name]) for link in model.links)
     return replace(model, links=links, features=tuple(features))
 
@@ -106,40 +110,55 @@ def contact_feature(contact: HullOverlap) -> Feature:
     return Feature("hull", "parts." + "+".join(contact.parts), f"hulls share {contact.volume:.3g} mm³")
 
 
-def _found(link: Link, kind: Collision, cache: BuildCache) -> list[Pieces]:
-    """Return the pieces of each of a link's collision shapes."""
-    return [_pieces(link, placed, kind, cache) for placed in link.collisions]
+class _Formed(NamedTuple):
+    """The pieces of a shape as shapes of the part, which no format changes, and their poses in the shape's frame [m]."""
+
+    pieces: Pieces
+    shapes: tuple[Shape, ...]
+    frames: SE3
 
 
-def _pieces(link: Link, placed: Placed, kind: Collision, cache: BuildCache) -> Pieces:
+def _formed(link: Link, kind: Collision, cache: BuildCache, known: dict[Any, Pieces]) -> list[_Formed]:
+    """Return the pieces of each of a link's collision shapes; those of `known` shapes are not looked for again."""
+    found = []
+    for placed in link.collisions:
+        pieces, shape = _pieces(link, placed, kind, cache, known), placed.shape
+        shapes = [
+            shape if piece.mesh is shape.mesh else Shape(piece.mesh, shape.frame @ piece.frame, shape.color, shape.name, piece.primitive)
+            for piece in pieces.pieces
+        ]
+        found.append(_Formed(pieces, tuple(shapes), metres(SE3.stack([piece.frame for piece in pieces.pieces]))))
+    return found
+
+
+def _pieces(link: Link, placed: Placed, kind: Collision, cache: BuildCache, known: dict[Any, Pieces]) -> Pieces:
     shape, solid = placed.shape, link.part.solid
     if kind == "solid" or (kind == "pieces" and shape.primitive is not None):
         return as_it_is(shape.mesh, shape.primitive)
     if kind == "hull":
         return whole_hull(shape.mesh)
     deflection = solid.deflection if solid is not None and solid.mesh.digest == shape.mesh.digest else 0.0
-    return pieces_of(shape.mesh, cache, deflection=deflection)
+    key = shape.mesh.digest, None if shape.mesh.face is None else shape.mesh.face.tobytes(), deflection
+    if key not in known:
+        known[key] = pieces_of(shape.mesh, cache, deflection=deflection)
+    return known[key]
 
 
-def _reshaped(link: Link, found: list[Pieces]) -> Link:
+def _reshaped(link: Link, formed: list[_Formed]) -> Link:
     """Return the link with pieces for its collision shapes."""
-    placed = [one for placed, pieces in zip(link.collisions, found, strict=True) for one in _placed(placed, pieces)]
-    return replace(link, collisions=tuple(placed))
+    collisions = []
+    for placed, (_, shapes, frames) in zip(link.collisions, formed, strict=True):
+        poses = placed.T_link_shape @ frames
+        collisions += [
+            placed if shape is placed.shape else replace(placed, shape=shape, T_link_shape=poses[index])
+            for index, shape in enumerate(shapes)
+        ]
+    return replace(link, collisions=tuple(collisions))
 
 
-def _placed(placed: Placed, found: Pieces) -> list[Placed]:
-    rows = []
-    for piece in found.pieces:
-        if piece.mesh is placed.shape.mesh:
-            rows.append(placed)
-            continue
-        shape = Shape(piece.mesh, placed.shape.frame @ piece.frame, placed.shape.color, placed.shape.name, piece.primitive)
-        rows.append(replace(placed, shape=shape, T_link_shape=placed.T_link_shape @ metres(piece.frame)))
-    return rows
-
-
-def _features(name: str, kind: Collision, found: list[Pieces]) -> list[Feature]:
+def _features(name: str, kind: Collision, formed: list[_Formed]) -> list[Feature]:
     """Return how the pieces differ from the shape, if they do."""
+    found = [one.pieces for one in formed]
     where = f"parts.{name}"
     if kind == "hull":
         more = max((pieces.more for pieces in found), default=0.0)
@@ -169,10 +188,14 @@ def adjacent(assembly: Assembly, pair: Pair) -> str:
 def _gap(assembly: Assembly, pair: Pair) -> float | None:
     """Return the distance of two parts at rest up to `TOUCHING_MM`, measured on the visual meshes; None if one has no solid."""
     rest = once(assembly, "rest", assembly.mechanism.rest_poses)
+    bodies: dict[str, manifold3d.Manifold] = once(assembly, "drawn bodies", dict)
     sides = []
     for name in pair:
-        meshes = [shape.placed for shape in assembly.parts[name].collisions if shape.mesh.is_closed and shape.mesh.volume > 0]
-        sides.append([manifold(drawn(mesh).mesh).transform(rest[name].matrix[:3]) for mesh in meshes])
+        meshes = [drawn(shape.placed).mesh for shape in assembly.parts[name].collisions if shape.mesh.is_closed and shape.mesh.volume > 0]
+        for mesh in meshes:
+            if mesh.digest not in bodies:
+                bodies[mesh.digest] = manifold(mesh)
+        sides.append([bodies[mesh.digest].transform(rest[name].matrix[:3]) for mesh in meshes])
     first, second = sides
     return min((float(one.min_gap(other, TOUCHING_MM)) for one in first for other in second), default=None)
 

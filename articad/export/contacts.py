@@ -68,9 +68,9 @@ class ContactSearch:
     poses: FloatArray
     solids: Mapping[str, tuple[Shape, ...]]
     _bodies: dict[tuple[str, bool], manifold3d.Manifold] = field(default_factory=dict)
-    _pieces: dict[str, list[_Placed]] = field(default_factory=dict)
+    _pieces: dict[str, tuple[Shape, ...]] = field(default_factory=dict)
     _found: dict[Pair, HullOverlap | None] = field(default_factory=dict)
-    _solids: dict[str, list[_Placed]] = field(default_factory=dict)
+    _ready: dict[tuple[str, bool], list[_Placed]] = field(default_factory=dict)
 
     @cached_property
     def _place(self) -> dict[str, int]:
@@ -78,7 +78,8 @@ class ContactSearch:
 
     def update(self, part: str, pieces: Iterable[Shape]) -> None:
         """Replace the pieces of a part."""
-        self._pieces[part] = self._placed(pieces, convex=True)
+        self._pieces[part] = tuple(pieces)
+        self._ready.pop((part, True), None)
         self._found = {pair: found for pair, found in self._found.items() if part not in pair}
 
     def contacts(self, skip: set[Pair]) -> list[HullOverlap]:
@@ -97,7 +98,7 @@ class ContactSearch:
                 continue
             low, high = (np.maximum(boxes[i][0], boxes[j][0]), np.minimum(boxes[i][1], boxes[j][1]))
             near = np.flatnonzero((low < high).all(axis=1))
-            if self._is_convex(a) and self._is_convex(b):
+            if near.any() and self._is_convex(a) and self._is_convex(b):
                 near = near[near == 0]  # in motion, such pieces meet only where the solids do
             self._found[a, b] = self._first_contact(a, b, near)
         found = sorted(self._found, key=lambda pair: (self._place[pair[0]], self._place[pair[1]]))
@@ -111,8 +112,8 @@ class ContactSearch:
 
     def _boxes(self, part: str) -> tuple[FloatArray, FloatArray]:
         """Return the corners of the part's bounding box in every pose, `(n, 3)` each."""
-        lows, highs = zip(*((piece.low, piece.high) for piece in self._pieces[part]), strict=True)
-        low, high = np.min(lows, axis=0), np.max(highs, axis=0)
+        bounds = np.array([shape.placed.bounds for shape in self._pieces[part]])
+        low, high = bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)
         T = self.poses[:, self._place[part]]
         centre = T[:, :3, :3] @ ((low + high) / 2) + T[:, :3, 3]
         half = np.abs(T[:, :3, :3]) @ ((high - low) / 2)
@@ -126,7 +127,7 @@ class ContactSearch:
             key = (np.round(T[:3], _KEY_DIGITS) + 0.0).tobytes()
             if key not in seen:
                 seen.add(key)
-                volume, depth = _overlap(self._pieces[a], self._pieces[b], T)
+                volume, depth = _overlap(self._bodies_of(a, convex=True), self._bodies_of(b, convex=True), T)
                 if depth > HULL_DEPTH_MM:
                     solids = self._solids_meet(a, b, T)
                     if index == 0 or not solids:
@@ -134,17 +135,20 @@ class ContactSearch:
         return None
 
     def _solids_meet(self, a: str, b: str, T: FloatArray) -> bool:
-        return _overlap(self._solid(a), self._solid(b), T)[1] > HULL_DEPTH_MM
-
-    def _solid(self, part: str) -> list[_Placed]:
-        if part not in self._solids:
-            self._solids[part] = self._placed(self.solids[part], convex=False)
-        return self._solids[part]
+        return _overlap(self._bodies_of(a, convex=False), self._bodies_of(b, convex=False), T)[1] > HULL_DEPTH_MM
 
     def _is_convex(self, part: str) -> bool:
         """True if one piece equals the part's only solid."""
-        pieces, solids = self._pieces[part], self._solid(part)
+        if len(self._pieces[part]) != 1 or len(self.solids[part]) != 1:
+            return False
+        pieces, solids = self._bodies_of(part, convex=True), self._bodies_of(part, convex=False)
         return len(pieces) == len(solids) == 1 and pieces[0].body.volume() <= solids[0].body.volume() * (1 + CONVEX_SHARE)
+
+    def _bodies_of(self, part: str, *, convex: bool) -> list[_Placed]:
+        """Return the bodies of a part's pieces, or of its solids; they are made when they are first compared."""
+        if (part, convex) not in self._ready:
+            self._ready[part, convex] = self._placed(self._pieces[part] if convex else self.solids[part], convex=convex)
+        return self._ready[part, convex]
 
     def _placed(self, shapes: Iterable[Shape], *, convex: bool) -> list[_Placed]:
         """Return the shapes' bodies in the part's frame; an open or flat shape has no body."""

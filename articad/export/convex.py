@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import io
-import json
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import manifold3d
 import numpy as np
@@ -14,12 +12,14 @@ import numpy as np
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
+from articad.export.arrays import load_arrays, save_arrays
 from articad.geometry.inscribed import MOST_PIECES, SCHEME, Inscribed, Piece, inscribed
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
 from articad.kernels.cache import BuildCache
 
 _FILE: Final = "pieces.npz"
+_FORM: Final = "articad.pieces/2"  # of that file
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ def pieces_of(mesh: TriMesh, cache: BuildCache, *, deflection: float = 0.0, most
         most: Number of pieces.
     """
     faces = hashlib.sha256(b"" if mesh.face is None else np.ascontiguousarray(mesh.face, dtype="<i4").tobytes()).hexdigest()
-    digest = hashlib.sha256(f"{SCHEME} {mesh.digest} {faces} {deflection!r} {most}".encode()).hexdigest()
+    digest = hashlib.sha256(f"{SCHEME} {_FORM} {mesh.digest} {faces} {deflection!r} {most}".encode()).hexdigest()
     folder = cache.get(digest)
     if folder is not None:
         found = _loaded((folder / _FILE).read_bytes())
@@ -88,30 +88,23 @@ def as_it_is(mesh: TriMesh, primitive: Primitive | None) -> Pieces:
 
 
 def _saved(found: Inscribed | None) -> bytes:
-    arrays: dict[str, Any] = {}
-    head: dict[str, Any] = {"pieces": []}
-    if found is not None:
-        head |= {"missing": found.missing, "bound": found.bound, "less": found.less}
-        for index, piece in enumerate(found.pieces):
-            arrays |= {f"{kind}{index}": getattr(piece.mesh, kind) for kind in ("vertices", "triangles")}
-            form = piece.primitive
-            head["pieces"].append({"frame": piece.frame.data.tolist(), "primitive": None if form is None else [form.kind, *form.size]})
-    stream = io.BytesIO()
-    np.savez_compressed(stream, allow_pickle=False, head=np.frombuffer(json.dumps(head).encode(), dtype=np.uint8), **arrays)
-    return stream.getvalue()
+    if found is None:
+        return save_arrays({}, [])
+    forms = [None if piece.primitive is None else [piece.primitive.kind, *piece.primitive.size] for piece in found.pieces]
+    rows = [{"frame": piece.frame.data.tolist(), "primitive": form} for piece, form in zip(found.pieces, forms, strict=True)]
+    head = {"pieces": rows, "missing": found.missing, "bound": found.bound, "less": found.less}
+    return save_arrays(head, [piece.mesh for piece in found.pieces])
 
 
 def _loaded(content: bytes) -> Inscribed | None:
-    with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-        head = json.loads(arrays["head"].tobytes())
-        if not head["pieces"]:
-            return None
-        pieces = []
-        for index, row in enumerate(head["pieces"]):
-            form = row["primitive"]
-            primitive = None if form is None else Primitive(form[0], tuple(form[1:]))
-            mesh = TriMesh(arrays[f"vertices{index}"], arrays[f"triangles{index}"])
-            pieces.append(Piece(mesh, SE3.from_unit_array(np.array(row["frame"])), primitive))
+    head, meshes = load_arrays(content)
+    if not meshes:
+        return None
+    pieces = []
+    for row, mesh in zip(head["pieces"], meshes, strict=True):
+        form = row["primitive"]
+        primitive = None if form is None else Primitive(form[0], tuple(form[1:]))
+        pieces.append(Piece(mesh, SE3.from_unit_array(np.array(row["frame"])), primitive))
     return Inscribed(tuple(pieces), head["missing"], head["bound"], head["less"])
 
 

@@ -5,25 +5,31 @@ Meshes for proofs are finer than drawings need. Visual meshes are simplified by 
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Literal, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import manifold3d
 import numpy as np
 
+from articad.errors import ArticadError
+from articad.export.arrays import load_arrays, save_arrays
 from articad.export.convex import manifold
 from articad.export.names import Names
 from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import write_obj, write_stl
 from articad.geometry.part import Part, Shape
+from articad.kernels.cache import BuildCache
 
 MeshKind = Literal["stl", "obj"]
 
 MM_TO_M = 0.001  # the scale that formats apply to the files
 DRAWN_TRIANGLES = 5000  # target size of a visual mesh, within the next bound
 DRAWN_SHARE, MOST_SHARE = 5e-4, 8e-3  # of its diagonal: deviation of its surface at first, and at most
+_SCHEME: Final = "articad.drawn/1"  # must change with anything that changes visual meshes
+_FILE: Final = "drawn.npz"
 
 
 class Drawn(NamedTuple):
@@ -33,8 +39,7 @@ class Drawn(NamedTuple):
     deviation: float
 
 
-@lru_cache(maxsize=64)
-def drawn(mesh: TriMesh, least: float = 0.0) -> Drawn:
+def drawn(mesh: TriMesh, least: float = 0.0, cache: BuildCache | None = None) -> Drawn:
     """Return a mesh with few triangles in place of one that is finer than drawings need.
 
     The surface moves by 1/2000 of the mesh's diagonal, on round faces about 0.1 rad between facets, and by more as long as there are
@@ -43,10 +48,45 @@ def drawn(mesh: TriMesh, least: float = 0.0) -> Drawn:
     Args:
         mesh: The mesh.
         least: Deviation that cannot be seen [mm]; the surface may move by that much in any case.
+        cache: Stores results by mesh; the cache of built parts by default. A failure to write there is ignored.
     """
+    found = _drawn(_Wanted(mesh.digest, least, mesh, cache))
+    return Drawn(mesh, 0.0) if found is None else found
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """A mesh to simplify. Equal meshes with equal deviations are equal, whichever object holds them."""
+
+    digest: str
+    least: float
+    mesh: TriMesh = field(compare=False)
+    cache: BuildCache | None = field(compare=False)
+
+
+@lru_cache(maxsize=64)
+def _drawn(wanted: _Wanted) -> Drawn | None:
+    """Return the simplified mesh, from the cache if it is there; None if the mesh stays as it is."""
+    cache = wanted.cache or BuildCache()
+    digest = hashlib.sha256(f"{_SCHEME} {wanted.digest} {wanted.least!r}".encode()).hexdigest()
+    folder = cache.get(digest)
+    if folder is not None:
+        head, meshes = load_arrays((folder / _FILE).read_bytes())
+        return Drawn(meshes[0], head["deviation"]) if meshes else None
+    found = _simplified(wanted.mesh, wanted.least)
+    try:
+        with cache.writing(digest) as new:
+            head = {} if found is None else {"deviation": found.deviation}
+            (new / _FILE).write_bytes(save_arrays(head, [] if found is None else [found.mesh]))
+    except ArticadError:
+        pass
+    return found
+
+
+def _simplified(mesh: TriMesh, least: float) -> Drawn | None:
     body = manifold(mesh) if mesh.is_closed else None
     if body is None or body.status() != manifold3d.Error.NoError or body.volume() <= 0:
-        return Drawn(mesh, 0.0)
+        return None
     size = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
     share = min(max(DRAWN_SHARE, least / size), MOST_SHARE)
     while True:
@@ -56,7 +96,7 @@ def drawn(mesh: TriMesh, least: float = 0.0) -> Drawn:
         share *= 2
     coarse = TriMesh(np.array(found.vert_properties[:, :3], dtype=np.float64), np.array(found.tri_verts, dtype=np.int32))
     fewer = coarse.is_closed and coarse.volume > 0 and len(coarse.triangles) < len(mesh.triangles)
-    return Drawn(coarse, share * size) if fewer else Drawn(mesh, 0.0)
+    return Drawn(coarse, share * size) if fewer else None
 
 
 def built_meshes(parts: Iterable[Part]) -> dict[str, TriMesh]:
@@ -64,16 +104,17 @@ def built_meshes(parts: Iterable[Part]) -> dict[str, TriMesh]:
     return {part.solid.mesh.digest: part.solid.mesh for part in parts if part.solid is not None and part.solid.deflection > 0}
 
 
-def drawn_shapes(part: Part, least: float = 0.0) -> tuple[Shape, ...]:
+def drawn_shapes(part: Part, least: float = 0.0, cache: BuildCache | None = None) -> tuple[Shape, ...]:
     """Return the visual shapes of a part, or its collision shapes if it has none; meshes of a built part are simplified.
 
     Args:
         part: The part.
         least: Deviation that cannot be seen where the part is drawn [mm].
+        cache: As for `drawn`.
     """
     built = built_meshes([part])
     shapes = part.visuals or part.collisions
-    return tuple(replace(one, mesh=drawn(built[one.mesh.digest], least).mesh) if one.mesh.digest in built else one for one in shapes)
+    return tuple(replace(one, mesh=drawn(built[one.mesh.digest], least, cache).mesh) if one.mesh.digest in built else one for one in shapes)
 
 
 class MeshFiles:
@@ -84,10 +125,13 @@ class MeshFiles:
         folder: Their folder.
         prefix: Prefix of their names in the document.
         draws: Whether visual meshes of built parts are simplified.
+        cache: As for `drawn`.
     """
 
-    def __init__(self, kind: MeshKind = "stl", folder: str = "meshes", prefix: str = "", *, draws: bool = False) -> None:
-        self.kind, self.folder, self.prefix, self.draws = kind, folder, prefix, draws
+    def __init__(
+        self, kind: MeshKind = "stl", folder: str = "meshes", prefix: str = "", *, draws: bool = False, cache: BuildCache | None = None
+    ) -> None:
+        self.kind, self.folder, self.prefix, self.draws, self.cache = kind, folder, prefix, draws, cache
         self.files: dict[str, bytes] = {}
         self._names = Names()
         self.by_digest: dict[str, str] = {}
@@ -107,7 +151,7 @@ class MeshFiles:
             path = f"{self.folder}/{self._names.claim(name)}.{kind}"
             self.by_digest[mesh.digest] = path
             look = self._drawn(mesh).mesh
-            self.files[path] = write_stl(look) if kind == "stl" else write_obj(look)
+            self.files[path] = _content(look, kind)
         return self.by_digest[mesh.digest]
 
     def deviation(self, mesh: TriMesh) -> float:
@@ -115,7 +159,7 @@ class MeshFiles:
         return self._drawn(mesh).deviation
 
     def _drawn(self, mesh: TriMesh) -> Drawn:
-        return drawn(self._built[mesh.digest]) if mesh.digest in self._built else Drawn(mesh, 0.0)
+        return drawn(self._built[mesh.digest], cache=self.cache) if mesh.digest in self._built else Drawn(mesh, 0.0)
 
     def keep(self, mesh: TriMesh, name: str) -> None:
         """Write the file of a mesh that the document states in another form, if the records name it."""
@@ -130,3 +174,12 @@ class MeshFiles:
     def uri(self, mesh: TriMesh, name: str) -> str:
         """Return how the document names the file of this mesh; see `path`."""
         return self.prefix + self.path(mesh, name)
+
+
+def _content(mesh: TriMesh, kind: MeshKind) -> bytes:
+    """Return the file of a mesh; its content lives as long as the mesh, because several formats write it."""
+    known = mesh.derived
+    if kind not in known:
+        known[kind] = write_stl(mesh) if kind == "stl" else write_obj(mesh)
+    content: bytes = known[kind]
+    return content

@@ -99,7 +99,7 @@ def write_mjcf(
     contacts: tuple[HullOverlap, ...] = ()
     if not (again.active and kind_of(assembly, collision) == "solid"):  # the file decides what collides in it
         model, contacts = collide(assembly, model, collision, _skipped(assembly), cache)
-    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid"), again)
+    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid", cache=cache), again)
     root = writer.document(contacts, actuators=actuators)
     zero = [row.joint.name for row in model.joints if any(_no_force(freedom) for freedom in row.freedoms)]
     nested = [row.joint.name for row in model.joints if row.is_free and _is_nested(row, assembly)]

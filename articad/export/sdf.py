@@ -84,7 +84,7 @@ def write_sdf(
     lowered = lower(assembly, () if ground_is_world(assembly) else RESERVED, part_frames=assembly.foreign)
     model = shape_model(assembly, lowered, kind, cache)
     features = [*model.features, *([Feature("loop.rest", "joints")] if model.loops else [])]
-    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind != "solid"))
+    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind != "solid", cache=cache))
     losses = (*losses_of("sdf", features), *kept_losses("sdf", assembly.kept, writer.kept.written))
     if strict:
         refuse(losses)

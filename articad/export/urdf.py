@@ -96,7 +96,8 @@ def write_urdf(
     losses = (*losses_of("urdf", features), *kept_losses("urdf", assembly.kept, keeper.written))
     if strict:
         refuse(losses)
-    files = MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid", prefix="" if package is None else f"package://{package}/")
+    prefix = "" if package is None else f"package://{package}/"
+    files = MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid", prefix=prefix, cache=cache)
     files.expect(link.part for link in model.links)
     follows = as_stated(followers(model, leaders(assembly)), model, stated)
     if loops == "mimic" and model.loops:

@@ -101,7 +101,8 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     materials = _Materials(f"/{root}/materials")
     free = {joint.child for joint in assembly.joints if joint.type is JointType.FREE and joint.name not in closing}
     lines.append(f'def Xform "{root}"\n{{' if free else f'def Xform "{root}" (\n    prepend apiSchemas = [{_ROOT}]\n)\n{{')
-    shapes = {name: _Shapes.of(part, colliding[name], draws=kind != "solid") for name, part in assembly.parts.items()}
+    texts = _Texts()
+    shapes = {name: _Shapes.of(part, colliding[name], kind, texts, cache) for name, part in assembly.parts.items()}
     meshes = _Meshes(f"/{root}/meshes", shapes.values())
     for name, part in assembly.parts.items():
         schemas = (_ROOT,) if name in free else ()
@@ -142,13 +143,27 @@ class _Shapes(NamedTuple):
     colliding: dict[int, str]
 
     @classmethod
-    def of(cls, part: Part, collisions: tuple[Shape, ...], *, draws: bool) -> _Shapes:
-        """Return the shapes; with `draws`, visual meshes of a built part are simplified."""
+    def of(cls, part: Part, collisions: tuple[Shape, ...], kind: Collision, texts: _Texts, cache: BuildCache | None) -> _Shapes:
+        """Return the shapes; visual meshes of a built part are simplified, unless the part collides with its own meshes."""
         visuals = part.visuals or part.collisions
-        looks = drawn_shapes(part) if draws else visuals
-        drawn = {id(one): _triangles(look.placed, flat=False) for one, look in zip(visuals, looks, strict=True)}
-        colliding = {id(one): _triangles(one.placed, flat=True) for one in collisions if _form(one, "", None) is None}
+        looks = visuals if kind == "solid" else drawn_shapes(part, cache=cache)
+        drawn = {id(one): texts.of(look, flat=False) for one, look in zip(visuals, looks, strict=True)}
+        colliding = {id(one): texts.of(one, flat=True) for one in collisions if _form(one, "", None) is None}
         return cls(visuals, collisions, drawn, colliding)
+
+
+class _Texts:
+    """Triangles of shapes as text, made once for each mesh and frame."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, bytes, bool], str] = {}
+
+    def of(self, shape: Shape, *, flat: bool) -> str:
+        """Return the triangles of a shape in its part's frame; see `_triangles`."""
+        key = shape.mesh.digest, shape.frame.data.tobytes(), flat
+        if key not in self._known:
+            self._known[key] = _triangles(shape.placed, flat=flat)
+        return self._known[key]
 
 
 class _Meshes:

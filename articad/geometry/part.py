@@ -64,7 +64,7 @@ class Shape:
     @property
     def placed(self) -> TriMesh:
         """The mesh in the part's frame."""
-        return self.mesh if self.frame.allclose(IDENTITY, mm=0.0, rad=0.0) else self.mesh.transformed(self.frame)
+        return self.mesh if self.frame == IDENTITY else self.mesh.transformed(self.frame)
 
     @cached_property
     def digest(self) -> str:

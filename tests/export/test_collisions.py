@@ -14,7 +14,7 @@ from lxml import etree
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
-from articad.export import convex
+from articad.export import collisions, contacts, convex, meshes
 from articad.export.contacts import poses_in_motion
 from articad.export.convex import pieces_of, whole_hull
 from articad.export.mjcf import write_mjcf
@@ -190,6 +190,36 @@ def test_pieces_are_kept_by_shape(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         (piece.mesh.digest, piece.primitive, piece.frame.data.tolist()) for piece in first.pieces
     ]
     assert (again.missing, again.bound, again.less) == (first.missing, first.bound, first.less)
+
+
+@pytest.mark.parametrize("write", [write_mjcf, write_urdf, write_sdf, write_usd])
+def test_an_export_with_a_filled_cache_computes_no_mesh_again(write: Any, cache: BuildCache, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither pieces nor visual meshes are computed, and no body of a fine mesh is made: the files are the same."""
+
+    def balls() -> Assembly:
+        built = [Solid.from_mesh(sphere(20, count), deflection=0.001) for count in (160, 170)]  # of 25,600 triangles or more
+        connectors = {"at": Connector("at", SE3.identity())}
+        parts = [Part.from_solid(name, one, density=STEEL, connectors=connectors) for name, one in zip(("a", "b"), built, strict=True)]
+        return Assembly.from_parts(
+            "two", parts=parts, joints=[declare.slider("slide", parts[0]["at"], parts[1]["at"], limits=(100, 200), rest=150)], ground="a"
+        )
+
+    first = write(balls(), cache=cache)
+    meshes._drawn.cache_clear()  # as in another process
+    sizes: list[int] = []
+    made = convex.manifold
+
+    def counted(mesh: TriMesh) -> Any:
+        sizes.append(len(mesh.triangles))
+        return made(mesh)
+
+    for module in (convex, collisions, contacts, meshes):
+        monkeypatch.setattr(module, "manifold", counted)
+    monkeypatch.setattr(convex, "inscribed", lambda *_, **__: pytest.fail("pieces are found anew"))
+    again = write(balls(), cache=cache)
+
+    assert again.files == first.files
+    assert max(sizes, default=0) <= meshes.DRAWN_TRIANGLES
 
 
 def test_what_is_drawn_of_a_built_part_is_coarser_and_says_by_how_much(cache: BuildCache, tmp_path: Path) -> None:
