@@ -23,6 +23,7 @@ from articad.export.bundle import Loss
 from articad.export.features import joint_features
 from articad.export.freecad_expressions import Followed, Number, names_in
 from articad.export.freecad_file import mesh_kernel
+from articad.export.freecad_materials import card
 from articad.export.losses import Feature, kept_losses, losses_of
 from articad.export.lowering import lower
 from articad.export.meshes import MeshFiles
@@ -197,7 +198,8 @@ class Job:
             "object": self.objects[name],
             "color": part.color,
             "material": part.material,
-            "mass": _mass(part),
+            "mass": (mass := _mass(part)),
+            "card": card(part.material, None if mass is None else mass["density"]),
             "description": "" if target is None else target.description,
             "placement": _seven(T),
             "placed": self._placed(name, T),

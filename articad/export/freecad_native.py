@@ -303,6 +303,8 @@ class _Writer:
             _property("Shape", "PartShape", stored, _row("ElementMap"), family="Part::PropertyPartShape"),
             _placement("Placement", _stands(brep)),
         ]
+        if part["card"]:
+            shape.append(_property("ShapeMaterial", "", _row("PropertyMaterial", uuid=part["card"]), family="Materials::PropertyMaterial"))
         if kind == "shape":
             return [self._add(body, "Part::Feature", *shape, label=label)]
         source = self.names.claim(f"{part['object']}_source")

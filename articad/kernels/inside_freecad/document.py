@@ -234,6 +234,10 @@ class _Writer:
         if mass is None:
             return
         shape = self.shapes[part["name"]]
+        if part["card"] and part["kind"] != "link" and "ShapeMaterial" in shape.PropertiesList:
+            import Materials  # noqa: PLC0415 - reads the whole library
+
+            shape.ShapeMaterial = Materials.MaterialManager().getMaterial(part["card"])
         if mass["density"] is not None and hasattr(shape, "Shape"):
             _number(item, "ArticadDensity", mass["density"] * 1e-9, "articad", _DENSITY, live=False, kind="Density")  # kg/mm³
             _number(item, "ArticadMass", mass["kg"], "articad", "Volume times density", live=False, kind="Mass")

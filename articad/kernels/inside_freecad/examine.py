@@ -48,6 +48,7 @@ def _look(document: Any, _: Json) -> Json:
         "boxes": {name: _box(item) for name, item in parts.items()},
         "volumes": {name: _volume(item) for name, item in parts.items()},
         "masses": {name: _mass(item) for name, item in parts.items()},
+        "materials": {name: _material(item) for name, item in parts.items()},
         "bill": _bill(document),
         "editable": {item.Label: _editable(item) for item in document.Objects if item.TypeId == "App::VarSet"},
         "invalid": [item.Name for item in document.Objects if "Invalid" in item.State],
@@ -94,11 +95,23 @@ def _connectors(part: Any) -> Json:
 
 
 def _shape(part: Any) -> Any:
+    item = _body(part)
+    return None if item is None else item.Shape
+
+
+def _body(part: Any) -> Any:
     container = part.LinkedObject if part.TypeId == "App::Link" else part
-    for item in container.Group:
-        if item.TypeId in ("PartDesign::Body", "Part::Feature", "Part::Mirroring"):
-            return item.Shape
-    return None
+    return next((item for item in container.Group if item.TypeId in ("PartDesign::Body", "Part::Feature", "Part::Mirroring")), None)
+
+
+def _material(part: Any) -> list[Any] | None:
+    """Return the card of a part's material in FreeCAD's library: its name and its density [kg/m³]."""
+    body = _body(part)
+    if body is None:
+        return None
+    card = body.ShapeMaterial
+    density = card.getPhysicalValue("Density").getValueAs("kg/m^3").Value if card.hasPhysicalProperty("Density") else None
+    return [card.Name, density]
 
 
 def _box(part: Any) -> list[list[float]] | None:
