@@ -48,7 +48,6 @@ def _look(document: Any, _: Json) -> Json:
         "boxes": {name: _box(item) for name, item in parts.items()},
         "volumes": {name: _volume(item) for name, item in parts.items()},
         "masses": {name: _mass(item) for name, item in parts.items()},
-        "materials": {name: _material(item) for name, item in parts.items()},
         "bill": _bill(document),
         "editable": {item.Label: _editable(item) for item in document.Objects if item.TypeId == "App::VarSet"},
         "invalid": [item.Name for item in document.Objects if "Invalid" in item.State],
@@ -63,6 +62,7 @@ def _look(document: Any, _: Json) -> Json:
         "labels": {item.Name: item.Label for item in document.Objects},
         "parameters": _parameters(document.getObject("Parameters")),
         "objects": sorted(f"{item.TypeId} {item.Name}" for item in document.Objects),
+        "materials": {name: _material(item) for name, item in parts.items()},  # last: to ask for a density touches the object
     }
 
 
