@@ -5,16 +5,17 @@ from __future__ import annotations
 import importlib
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
+from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, led, strokes
 from articad.simulation.verdict import EngineOutcome, JointReach, covered
 
 STEPS_PER_S = 240
 SOLVER_ITERATIONS = 500  # PyBullet's 50 do not converge where a light link carries a heavy one: held joints drift
 HOLD_S = 1.0
+MOST_TURN_RAD = 40 * PACE_RAD_S  # over which a hinge is driven
 HOLD_FORCE = 1e5  # N or N·m: as large as needed
 
 
@@ -45,7 +46,11 @@ class _Trial:
 
     def run(self) -> EngineOutcome:
         """Hold, then drive; return the measurements."""
-        joints = list(self._joints())
+        made = list(self._joints())
+        found = {joint.name: joint for joint in made}
+        followers = led(self.mimics, found)
+        starts = {name: ratio * found[leader].start + offset for name, (leader, ratio, offset) in followers.items()}
+        joints = [replace(joint, start=starts.get(joint.name, joint.start)) for joint in made]
         self._reset(joints)
         steps = int(HOLD_S * STEPS_PER_S)
         seen: dict[_Joint, list[float]] = {joint: [] for joint in joints}
@@ -61,22 +66,21 @@ class _Trial:
         self.outcome.speed_at_rest = max(ways, default=0.0) / (0.1 * HOLD_S)
         away = (abs(self._value(joint) - joint.start) for joint in joints)
         self.outcome.moved_at_rest = max(away, default=0.0)
-        names = {joint.name for joint in joints}
         kept = [joint for joint in joints if "*" not in self.opened and joint.name not in self.opened]
         self.outcome.passed_over = tuple(joint.name for joint in joints if joint not in kept)
-        kept = [joint for joint in kept if self.mimics.get(joint.name, ("",))[0] not in names - {joint.name}]
+        kept = [joint for joint in kept if joint.name not in followers]
         self.outcome.untried = max(0, len(kept) - MOST_JOINTS)
         for joint in kept[:MOST_JOINTS]:
-            self.outcome.reaches.append(self._stroke(joint, joints))
+            self.outcome.reaches.append(self._stroke(joint, joints, followers))
             if self.outcome.exploded:
                 break
         return self.outcome
 
-    def _stroke(self, joint: _Joint, joints: list[_Joint]) -> JointReach:
-        """Drive one joint over its range and hold the others."""
+    def _stroke(self, joint: _Joint, joints: list[_Joint], led_by: Mapping[str, tuple[str, float, float]]) -> JointReach:
+        """Drive one joint over its range with its followers, and hold the others."""
         self._reset(joints)
         targets = {other: other.start for other in joints}
-        followers = [(one, *self.mimics[one.name][1:]) for one in joints if self.mimics.get(one.name, ("",))[0] == joint.name]
+        followers = [(one, *led_by[one.name][1:]) for one in joints if one.name in led_by and led_by[one.name][0] == joint.name]
         low = high = joint.start
         pace = PACE_RAD_S if joint.unit == "rad" else PACE_M_S
         steps = round(max(STROKE_S, (joint.upper - joint.lower) / pace) * STEPS_PER_S)
@@ -100,8 +104,8 @@ class _Trial:
                 turns = kind == bullet.JOINT_REVOLUTE
                 if lower > upper:  # PyBullet's notation for an endless joint
                     lower, upper = (0.0, math.tau) if turns else (-FREE_SLIDE_M, FREE_SLIDE_M)
-                elif turns and upper - lower > 2 * math.tau:
-                    lower, upper = max(lower, -math.tau), min(upper, math.tau)
+                elif turns and upper - lower > MOST_TURN_RAD:
+                    lower, upper = max(lower, -MOST_TURN_RAD / 2), min(upper, MOST_TURN_RAD / 2)
                 name = row[1].decode(errors="replace")
                 yield _Joint(body, index, name, "rad" if turns else "m", lower, upper, min(max(self.rest.get(name, 0.0), lower), upper))
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,12 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.arrays import FloatArray
-from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_FOLLOWER, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
+from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_FOLLOWER, PACE_M_S, PACE_RAD_S, STROKE_S, led, strokes
 from articad.simulation.verdict import EngineOutcome, FilmFrame, JointReach, Role, covered
 
 STIFFNESS = 20.0  # ω of the controller [1/s]: a tenth of a second to arrive
 MOST_ERROR = 0.2  # rad or m: largest error on which the controller acts
 HOLD_S = 1.0
+MOST_STEPS = 20_000  # of a stroke: 40 s at MuJoCo's default time step
 FREE_S = 1.0
 IMPACT_S = 0.3  # until an impact in loops and couplings has decayed
 LOCKED = 1e-6  # share of its mobility that loops leave to a joint that cannot move
@@ -56,6 +58,7 @@ class Trial:
     rest: Mapping[str, float] = field(default_factory=dict)
     mimics: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
     felt: FloatArray | None = None
+    longest: dict[int, float] = field(default_factory=dict)  # range of a hinge that one stroke covers [rad], by joint
 
     @classmethod
     def of(cls, path: Path, rest: Mapping[str, float] | None = None, mimics: Mapping[str, tuple[str, float, float]] | None = None) -> Trial:
@@ -64,7 +67,8 @@ class Trial:
         Args:
             path: A URDF or MJCF file.
             rest: Initial values of hinges and slides by name [rad or m], for a file without a key `home`.
-            mimics: Leader, multiplier and offset of joints that follow others and that MuJoCo does not couple.
+            mimics: Leader, multiplier and offset of joints that follow others by <mimic>. They have no drive of their own, whether this
+                version of MuJoCo couples them or not.
 
         Raises:
             ValueError: If MuJoCo refuses it.
@@ -100,6 +104,8 @@ class Trial:
             for joint in self._single_joints():
                 at = self.model.jnt_qposadr[joint]
                 self.data.qpos[at] = self.rest.get(self._name(joint), self.data.qpos[at])
+            for joint, (leader, ratio, offset) in self._mimicked.items():
+                self.data.qpos[self.model.jnt_qposadr[joint]] = ratio * self.data.qpos[self.model.jnt_qposadr[leader]] + offset
         self.data.qvel[:] = 0.0
         mujoco.mj_forward(self.model, self.data)
 
@@ -121,14 +127,18 @@ class Trial:
         self.outcome.residual = float(np.abs(self.data.efc_pos[: self.data.nefc][rows]).max(initial=0.0)) if self.model.neq else 0.0
 
     def _drive(self, drivers: tuple[str, ...] | None, opened: frozenset[str]) -> None:
-        """Drive each hinge and slide over its range; in a loop only its drivers, with the rest of the loop free to follow."""
+        """Drive each hinge and slide over its range; in a loop only its drivers, with the rest of the loop free to follow.
+
+        If the drivers are unknown, a joint that an equality makes a function of another joint is not driven: through a screw, it would
+        turn the other one a thousand times as fast.
+        """
         single, count = list(self._single_joints()), 0
         self.outcome.passed_over = tuple(self._name(joint) for joint in single if self._name(joint) in opened)
-        single = [joint for joint in single if self._name(joint) not in opened and self._leader(joint) is None]
+        single = [joint for joint in single if self._name(joint) not in opened and joint not in self._mimicked]
         for number, loop in enumerate(self._loops(single)):
             inside = [joint for joint in single if joint in loop]
             leading = [joint for joint in inside if drivers is not None and self._name(joint) in drivers]
-            driven = leading or inside
+            driven = leading or [joint for joint in inside if joint not in self._coupled] or inside
             taken = driven[: max(0, MOST_JOINTS - count)]
             count += len(taken)
             self.outcome.untried += len(driven) - len(taken)
@@ -151,16 +161,23 @@ class Trial:
         blocker = made[joint].blocker if joint in made and share < 1 else ""
         return JointReach(self._name(joint), lower, upper, low, high, share, unit, blocker, role, None if role == "free" else number)
 
-    def _leader(self, joint: int) -> int | None:
-        """Return the hinge or slide that leads a joint by <mimic>; None if there is none."""
-        found = self.mimics.get(self._name(joint))
-        if found is None or self.model.neq:  # a model with equalities couples its joints itself
-            return None
-        return next((one for one in self._single_joints() if self._name(one) == found[0] and one != joint), None)
+    @cached_property
+    def _mimicked(self) -> dict[int, tuple[int, float, float]]:
+        """Joints that follow others by <mimic>: the leader that follows none, and value = ratio · leader + offset."""
+        by_name = {self._name(joint): joint for joint in self._single_joints()}
+        return {by_name[name]: (by_name[leader], ratio, offset) for name, (leader, ratio, offset) in led(self.mimics, by_name).items()}
+
+    @cached_property
+    def _coupled(self) -> set[int]:
+        """Joints that equalities make functions of other joints."""
+        rows = np.flatnonzero(
+            (self.model.eq_type == int(mujoco.mjtEq.mjEQ_JOINT)) & (self.model.eq_obj2id >= 0) & (self.model.eq_active0 > 0)
+        )
+        return {int(self.model.eq_obj1id[row]) for row in rows}
 
     def _followers(self, joint: int) -> list[tuple[int, float, float]]:
         """Return the joints that follow one, each with its multiplier and offset."""
-        return [(one, *self.mimics[self._name(one)][1:]) for one in self._single_joints() if self._leader(one) == joint]
+        return [(one, ratio, offset) for one, (leader, ratio, offset) in self._mimicked.items() if leader == joint]
 
     def _followed(self, leader: int, number: int, made: dict[int, Stroke]) -> list[JointReach]:
         """Return how far the followers of a leader moved, relative to their expected ranges."""
@@ -174,17 +191,20 @@ class Trial:
 
     def _stroke(self, joint: int, following: frozenset[int]) -> Stroke:
         """Drive one joint over its range with its followers, all others held."""
-        lower, upper, unit = self._range(joint)
         self.reset()
+        turns = self.model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_HINGE)
+        mean_pace = PACE_RAD_S if turns else PACE_M_S
+        if following:
+            mean_pace = min(mean_pace, PACE_FOLLOWER / self._gearing(joint))
+        if turns:
+            self.longest[joint] = max(2 * math.tau, mean_pace * MOST_STEPS * float(self.model.opt.timestep))
+        lower, upper, _ = self._range(joint)
         at, target = self.model.jnt_qposadr[joint], np.array(self.start)
         free = set(np.flatnonzero(np.isin(self.model.dof_jntid, list(following))).tolist())
         held = np.array([dof for dof in self._hinged_dofs() if dof not in free], dtype=int)
         self.felt = self._inertia(held) if free else None
         rest = float(self.start[at])
         low, high, blocker, lag = np.array(self.start), np.array(self.start), "", 0.0
-        mean_pace = PACE_RAD_S if unit == "rad" else PACE_M_S
-        if following:
-            mean_pace = min(mean_pace, PACE_FOLLOWER / self._gearing(joint))
         steps = self._steps(max(STROKE_S, (upper - lower) / mean_pace))
         shown = {steps, 2 * steps, 3 * steps - 1}
         before, followers = rest, self._followers(joint)
@@ -308,7 +328,7 @@ class Trial:
     # ------------------------------------------------------------------ the model
 
     def _steps(self, seconds: float) -> int:
-        return max(1, min(round(seconds / float(self.model.opt.timestep)), 20_000))
+        return max(1, min(round(seconds / float(self.model.opt.timestep)), MOST_STEPS))
 
     def _hinged_dofs(self) -> NDArray[np.int_]:
         """Return the degrees of freedom that do not belong to free bodies."""
@@ -321,14 +341,14 @@ class Trial:
                 yield joint
 
     def _range(self, joint: int) -> tuple[float, float, str]:
-        """Return the range over which a joint is driven: its limits, else one turn or a short travel."""
+        """Return the range over which a joint is driven: its limits as far as a stroke can last, else one turn or a short travel."""
         turns = self.model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_HINGE)
         unit, rest = "rad" if turns else "m", float(self.start[self.model.jnt_qposadr[joint]])
         lower, upper = (float(bound) for bound in self.model.jnt_range[joint])
         if not self.model.jnt_limited[joint]:
             lower, upper = (rest, rest + math.tau) if turns else (rest - FREE_SLIDE_M, rest + FREE_SLIDE_M)
-        elif turns and upper - lower > 2 * math.tau:
-            lower, upper = max(lower, rest - math.tau), min(upper, rest + math.tau)
+        elif turns and upper - lower > (longest := self.longest.get(joint, 2 * math.tau)):
+            lower, upper = max(lower, rest - longest / 2), min(upper, rest + longest / 2)
         for follower, ratio, offset in self._followers(joint):
             if self.model.jnt_limited[follower] and ratio:
                 ends = sorted((float(bound) - offset) / ratio for bound in self.model.jnt_range[follower])

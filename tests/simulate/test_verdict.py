@@ -104,6 +104,44 @@ def test_a_driver_reaches_its_range_however_much_its_followers_weigh(tmp_path: P
     assert outcome.top_speed < 100
 
 
+SCREW = """<robot name="press"><link name="bed"/>
+<link name="nut"><inertial><mass value="0.65"/><inertia ixx="4e-4" iyy="4e-4" izz="4e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="dial"><inertial><mass value="0.05"/><inertia ixx="4e-6" iyy="4e-6" izz="7e-6" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="spindle"><inertial><mass value="0.4"/><inertia ixx="4e-3" iyy="4e-3" izz="5e-5" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="slide" type="prismatic"><parent link="bed"/><child link="nut"/><axis xyz="1 0 0"/>
+<limit lower="0.003" upper="0.055" effort="20" velocity="1"/><mimic joint="turn" multiplier="0.0006" offset="0.03"/></joint>
+<joint name="turn" type="revolute"><parent link="bed"/><child link="spindle"/><axis xyz="1 0 0"/>
+<limit lower="-40" upper="40" effort="2" velocity="20"/></joint>
+<joint name="gauge" type="continuous"><parent link="bed"/><child link="dial"/><axis xyz="0 0 1"/>
+<limit effort="1" velocity="9"/><mimic joint="slide" multiplier="20" offset="0"/></joint></robot>"""
+
+
+def test_a_screw_is_driven_by_its_spindle_over_all_its_turns(tmp_path: Path) -> None:
+    """A follower has no drive: driven through its nut, a spindle of 0.6 mm per radian would turn 1,600 times as fast."""
+    path = tmp_path / "press.urdf"
+    path.write_text(SCREW)
+
+    verdict = simulate_file(path)
+
+    assert verdict.ok, [str(finding) for finding in verdict.findings]
+    for outcome in verdict.outcomes:
+        turn = next(reach for reach in outcome.reaches if reach.joint == "turn")
+        assert (turn.low, turn.high) == pytest.approx((-40, 40), abs=0.5)
+    (mujoco, _) = verdict.outcomes
+    reaches = {reach.joint: reach for reach in mujoco.reaches}
+    assert reaches["slide"].high - reaches["slide"].low == pytest.approx(0.0006 * 80, rel=0.01)
+    assert reaches["gauge"].high - reaches["gauge"].low == pytest.approx(20 * 0.0006 * 80, rel=0.01)
+
+
+def test_an_equality_says_which_joint_follows_where_drivers_are_unknown(tmp_path: Path) -> None:
+    nut = '<body name="nut" pos="0.3 0 0.5"><joint name="nut" type="slide" axis="1 0 0"/><geom type="box" size="0.02 0.02 0.02"/></body>'
+    screw = '<equality><joint joint1="nut" joint2="turn" polycoef="0 0.0006 0 0 0"/></equality>'
+    (outcome,) = verdict_on(tmp_path, bodies=nut, rest=screw).outcomes
+
+    assert not outcome.exploded
+    assert [reach.share >= SHARE for reach in outcome.judged] == [True]
+
+
 def test_a_spring_that_pushes_away_gains_energy(tmp_path: Path) -> None:
     """Damping below zero does what no hinge does: it feeds the motion."""
     verdict = verdict_on(tmp_path, joint='damping="-0.0002"')
@@ -176,7 +214,7 @@ def test_each_joint_of_a_loop_is_held_to_what_its_drivers_bring_it_to() -> None:
     }
     angles = arm.configuration["arm"][:, 0]
     assert (reaches["arm"].lower, reaches["arm"].upper) == pytest.approx((angles.min(), angles.max()), abs=1e-3)
-    assert reaches["spindle__t"].upper == pytest.approx(1.25e-3)  # one turn of its lead
+    assert reaches["spindle__t"].upper == pytest.approx(2 * 1.25e-3)  # two turns of its lead, which are its range
     assert all(reach.share > 0.99 for reach in reaches.values())
 
 
