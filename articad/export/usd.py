@@ -46,6 +46,15 @@ _PRIMS = {
     JointType.SLIDER: "PhysicsPrismaticJoint",
     JointType.BALL: "PhysicsSphericalJoint",
 }
+_ABOUT_X = SE3.from_quaternion([1.0, 0.0, 0.0, 0.0])
+_REVERSING = {  # half a turn about x reverses motions about and along z; J⁻¹ of the other types has another order of factors
+    JointType.FIXED: SE3.identity(),
+    JointType.BALL: SE3.identity(),
+    JointType.REVOLUTE: _ABOUT_X,
+    JointType.SLIDER: _ABOUT_X,
+    JointType.CYLINDRICAL: _ABOUT_X,
+    JointType.SCREW: _ABOUT_X,
+}
 _NORMAL_DIGITS = 4  # of the components of unit normals
 _POINT_DIGITS = 8  # of coordinates in m: USD keeps points in single precision
 _ROOT = '"PhysicsArticulationRootAPI"'
@@ -114,12 +123,14 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     ground = f"</{root}/{bodies[assembly.ground]}>"
     held = [_ROOT] if free else []  # roots of articulations may not be nested, so each is on a prim of its own
     lines += _indented(_joint_prim("PhysicsFixedJoint", "to_world", (None, ground), (rest[assembly.ground], SE3.identity()), [], held), 2)
+    backwards = {edge.joint.name for edge in assembly.mechanism.tree.edges if edge.reversed}
     for joint in assembly.joints:
         if joint.type is JointType.FREE:
             continue
         ends = (f"</{root}/{bodies[joint.parent]}>", f"</{root}/{bodies[joint.child]}>")
         more = [*_dynamics(joint), *_mimic(joint, ties.get(joint.name), names, root)]
-        lines += _indented(_joint(joint, names[joint.name], ends, more, closes=joint.name in closing), 2)
+        rows = _joint(joint, names[joint.name], ends, more, closes=joint.name in closing, backwards=joint.name in backwards)
+        lines += _indented(rows, 2)
     lines += ["    }", "}"]
     return Bundle({f"{root}.usda": ("\n".join(lines) + "\n").encode("ascii")}, losses)
 
@@ -476,9 +487,16 @@ def _held(assembly: Assembly, features: Iterable[Feature], ties: Mapping[str, Co
     return found
 
 
-def _joint(joint: Joint, name: str, ends: tuple[str, str], more: Sequence[_Extra], *, closes: bool) -> list[str]:
-    """Return a joint; its frame on the child includes the mate's flip, so that both coincide at zero."""
+def _joint(joint: Joint, name: str, ends: tuple[str, str], more: Sequence[_Extra], *, closes: bool, backwards: bool) -> list[str]:
+    """Return a joint; its frame on the child includes the mate's flip, so that both coincide at zero.
+
+    `body0` is nearer to the ground, as Newton requires. For a joint that leads from child to parent, both frames are turned about an axis
+    by F, so that F⁻¹ J(q)⁻¹ F = J(q): values and limits stay the same.
+    """
     frames = (joint.T_parent_connector, joint.T_child_connector @ flip(joint.mate))
+    turn = _REVERSING.get(joint.type)
+    if backwards and turn is not None:
+        ends, frames = (ends[1], ends[0]), (frames[1] @ turn, frames[0] @ turn)
     extra = ["bool physics:excludeFromArticulation = true"] if closes else []
     extra += [line for one in more for line in one.fields]
     schemas = [f'"{one.schema}"' for one in more]

@@ -18,7 +18,7 @@ from articad.geometry.part import Part
 from articad.geometry.shapes import sphere
 from articad.kernels.cache import BuildCache
 from articad.kinematics import declare
-from articad.kinematics.joints import Coupling
+from articad.kinematics.joints import Coupling, JointType
 from articad.plan.resolve import Material
 from tests.assemblies import all_joint_kinds, block, closed, four_bar, frame, geared_pair
 
@@ -106,14 +106,21 @@ def test_usd_core_reads_bodies_masses_and_joints_that_meet_at_rest(name: str, tm
         assert np.allclose(matrix[:3, :3], rest[part_name].rotation, atol=1e-9)
         assert np.allclose(matrix[:3, 3], rest[part_name].translation / 1000, atol=1e-9)
     configuration = assembly.mechanism.configuration(assembly.mechanism.rest)
+    above = {edge.part: edge.parent for edge in assembly.mechanism.tree.edges}
     for joint in assembly.joints:
         prim = UsdPhysics.Joint(stage.GetPrimAtPath(root.AppendPath(f"joints/{joint.name}")))
+        first, second = (relation.GetTargets()[0].name for relation in (prim.GetBody0Rel(), prim.GetBody1Rel()))
+        assert {first, second} == {joint.parent, joint.child}
+        if joint not in assembly.mechanism.loop_joints:
+            assert above[second] == first  # Newton loads no other tree
         near, far = (
-            bodies[joint.parent] @ matrix_of(prim.GetLocalPos0Attr().Get(), prim.GetLocalRot0Attr().Get()),
-            bodies[joint.child] @ matrix_of(prim.GetLocalPos1Attr().Get(), prim.GetLocalRot1Attr().Get()),
+            bodies[first] @ matrix_of(prim.GetLocalPos0Attr().Get(), prim.GetLocalRot0Attr().Get()),
+            bodies[second] @ matrix_of(prim.GetLocalPos1Attr().Get(), prim.GetLocalRot1Attr().Get()),
         )
         motion = joint.motion(configuration[joint.name]).matrix
         motion[:3, 3] /= 1000
+        if joint.type is JointType.BALL and first == joint.child:  # its frames are not turned, so its quaternion is the inverse
+            motion = np.linalg.inv(motion)
         assert np.allclose(near @ motion, far, atol=1e-6)  # local frames are single precision in UsdPhysics
 
 
