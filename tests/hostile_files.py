@@ -1,4 +1,4 @@
-"""A hundred files that were made to exhaust whoever reads them: memory, time, recursion, or the room on the disk.
+"""More than a hundred files that were made to exhaust whoever reads them: memory, time, recursion, or the room on the disk.
 
 Each entry writes its files into a folder and returns the words of the command that reads them. Sizes are those that hurt a reader without
 bounds: exponents of nesting, counts that a header claims, products of two plausible numbers.
@@ -245,6 +245,13 @@ def dae_doubled() -> bytes:
     return whole.replace("</node></visual_scene>", '<instance_node url="#n0"/></node></visual_scene>').encode()
 
 
+def dae_of_entities() -> str:
+    """Return a DAE with entities that grow tenfold at each of nine levels."""
+    entities = '<!ENTITY e0 "0 0 0 0 0 0 0 0 0 0">' + "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 9))
+    plain = DAE.format(unit="", up="Z_UP").replace("0 0 0 1 0 0", "&e8;")
+    return plain.replace("?><COLLADA", f"?><!DOCTYPE COLLADA [{entities}]><COLLADA")
+
+
 STL = b"articad".ljust(80)
 PLY = "ply\nformat {}\nelement vertex {}\n{}element face {}\nproperty list uchar int vertex_indices\nend_header\n"
 XYZ = "property float x\nproperty float y\nproperty float z\n"
@@ -253,6 +260,8 @@ mesh("an STL of nothing, 1 GiB", "a.stl", lambda: STL + struct.pack("<I", ((1 <<
 mesh(
     "an STL of nothing, 400 MiB", "a.stl", lambda: STL + struct.pack("<I", ((400 << 20) - 84) // 50), (400 << 20) - ((400 << 20) - 84) % 50
 )
+mesh("an STL of nothing, as large as one may be", "a.stl", lambda: STL + struct.pack("<I", 1_000_000), 84 + 1_000_000 * 50)
+mesh("an STL of short words", "a.stl", lambda: b"solid " + b"xx " * 40_000_000)
 mesh("an STL of 100 GiB", "a.stl", lambda: STL, 100 << 30)
 mesh("an STL of words", "a.stl", lambda: b"solid " + b"x " * 20_000_000)
 mesh("an STL of digits", "a.stl", lambda: b"solid a\nfacet normal 0 0 " + DIGITS.encode())
@@ -287,6 +296,12 @@ mesh(
     "a.glb",
     lambda: glb({"meshes": TRIANGLE, "nodes": [{"mesh": 0}] * 100_000, "scenes": [{"nodes": list(range(100_000))}]} | accessor(3), POINTS),
 )
+mesh(
+    "a glTF of one shape in many places",
+    "a.glb",
+    lambda: glb({"meshes": [{"primitives": TRIANGLE[0]["primitives"] * 3000}], "nodes": [{"mesh": 0}] * 3000} | accessor(3), POINTS),
+)
+mesh("a glTF of empty objects", "a.gltf", lambda: b'{"asset": {"version": "2.0"}, "extras": [' + b"{}," * 20_000_000 + b"{}]}")
 mesh("a glTF of deep lists", "a.glb", lambda: struct.pack("<4sIII4s", b"glTF", 2, 2_000_020, 2_000_000, b"JSON") + b"[" * 2_000_000)
 mesh(
     "a glTF of another file",
@@ -299,6 +314,7 @@ mesh(
     "a.dae",
     lambda: dae_doubled().replace(b"<node id='n30'/>", b'<node id="n30"><instance_node url="#n0"/></node>'),
 )
+mesh("a DAE of entities in UTF-16", "a.dae", lambda: (chr(0xFEFF) + dae_of_entities()).encode("utf-16-le"))
 mesh("a DAE of numbers", "a.dae", lambda: DAE.format(unit="", up="Z_UP").replace("0 0 0 1 0 0", "1 " * 8_000_000).encode())
 mesh("a DAE of a unit", "a.dae", lambda: DAE.format(unit=f'<unit meter="{DIGITS}"/>', up="Z_UP").encode())
 

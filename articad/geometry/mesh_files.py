@@ -9,25 +9,34 @@ A file is somebody else's: whatever is wrong with it becomes a `ReadError` that 
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import math
 import re
 import struct
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from lxml import etree
 from numpy.typing import NDArray
 
 from articad.arrays import FloatArray
 from articad.errors import ArticadError, ReadError
-from articad.files import read_file
+from articad.files import is_file, read_file
 from articad.findings import Finding
 from articad.geometry.mesh import TriMesh, merged
 
-MAX_FILE_BYTES = 1 << 30  # a mesh of 20 million triangles; more is a mistake or an attack
+MAX_FILE_BYTES = 128 << 20  # binary STL of MAX_TRIANGLES has 50 MB
+MAX_TRIANGLES = 1_000_000  # of one file, placed copies included; MuJoCo takes 200,000
+MAX_WORDS = 8_000_000  # of a text format: 380,000 triangles of a text STL, a million of an OBJ with half a million vertices
+MAX_NODES = 10_000  # placed shapes of a scene
+MAX_LIBRARIES = 100  # of materials, that an OBJ names and that are looked for
+MAX_MARKS = 2_000_000  # brackets and commas of the JSON in a glTF
 STL_HEADER = b"articad binary STL, mm".ljust(80, b" ")  # must not begin with "solid", or readers take it for text
 _OBJ_HEADER = b"# articad, mm\n"
 MADE_BY_ARTICAD = (STL_HEADER, _OBJ_HEADER)  # beginnings of the meshes that articad writes
@@ -82,8 +91,9 @@ def states_colors(path: Path, root: Path | None = None) -> bool:
     content = read_file(path, MAX_FILE_BYTES, root=root)
     match path.suffix.lower():
         case ".obj":
-            names = [line.split(maxsplit=1)[1] for line in content.splitlines() if line.startswith(b"mtllib ") and len(line.split()) > 1]
-            return b"usemtl " in content and any((path.parent / name.decode(errors="replace").strip()).is_file() for name in names)
+            names = dict.fromkeys(_MTLLIB.findall(content)) if b"usemtl " in content else {}
+            places = [path.parent / name.decode(errors="replace").strip() for name in islice(names, MAX_LIBRARIES)]
+            return any(is_file(place, root=root or path.parent) for place in places)
         case ".dae":
             return b"<instance_material" in content
         case ".glb" | ".gltf":
@@ -197,6 +207,7 @@ def _read_stl(path: Path, content: bytes) -> TriMesh:
     if len(content) >= 84:
         count = struct.unpack_from("<I", content, 80)[0]
         if len(content) == 84 + count * _STL_RECORD.itemsize:
+            _require_few(path, count, MAX_TRIANGLES, "triangles")
             records = np.frombuffer(content, dtype=_STL_RECORD, offset=84)
             return _soup(path, records["corners"].reshape(-1, 3).astype(np.float64))
     if content[:256].lstrip()[:5].lower() == b"solid" and b"\0" not in content[:1024]:
@@ -210,6 +221,7 @@ def _read_stl(path: Path, content: bytes) -> TriMesh:
 
 
 def _read_text_stl(path: Path, content: bytes) -> TriMesh:
+    _require_few(path, _words(content), MAX_WORDS, "words")
     lines = [line for line in content.splitlines() if line.lstrip()[:5].lower() != b"solid" and line.lstrip()[:8].lower() != b"endsolid"]
     tokens = b"\n".join(lines).split()
     well_formed = len(tokens) % _STL_TOKENS == 0
@@ -260,50 +272,63 @@ def _soup(path: Path, corners: FloatArray) -> TriMesh:
 
 def _read_obj(path: Path, content: bytes) -> TriMesh:
     content = content.replace(b"\r\n", b"\n").replace(b"\\\n", b" ")
-    lines = content.split(b"\n")
-    vertex_lines = [line for line in lines if line.startswith((b"v ", b"v\t"))]
-    face_lines = [line for line in lines if line.startswith((b"f ", b"f\t"))]
-    vertices = _obj_vertices(path, lines, vertex_lines)
-    table = re.sub(rb"/\S*", b"", b"\n".join(face_lines))
-    words = table.replace(b"f", b"").split()
-    simple = len(words) == 3 * len(face_lines) and all(line.count(b"-") == 0 for line in face_lines)
-    try:
-        triangles = np.array(words, dtype=np.int64).reshape(-1, 3) - 1 if simple and _are_triangles(table) else None
-    except (ValueError, OverflowError):
-        triangles = None
+    _require_few(path, _words(content), MAX_WORDS, "words")
+    lines = _OBJ_LINE.findall(content)
+    vertices = _obj_vertices(path, content, b"\n".join(line[2:] for line in lines if line.startswith(b"v")))
+    triangles = _obj_triangles_at_once(b"\n".join(line[2:] for line in lines if line.startswith(b"f")))
     if triangles is None or (len(triangles) and (triangles.min() < 0 or triangles.max() >= len(vertices))):
-        triangles = _obj_faces_one_by_one(path, lines, len(vertices))
+        triangles = _obj_faces_one_by_one(path, content, len(vertices))
     return TriMesh(vertices, triangles.astype(np.int32)).welded()
 
 
-def _are_triangles(table: bytes) -> bool:
-    return all(len(line.split()) == 4 for line in table.split(b"\n") if line)
+_OBJ_LINE = re.compile(rb"^[vf][ \t][^\n]*", re.MULTILINE)
+"""A line of an OBJ that states a vertex or a face; all others are ignored."""
 
 
-def _obj_vertices(path: Path, lines: list[bytes], vertex_lines: list[bytes]) -> FloatArray:
-    if not vertex_lines:
+_MTLLIB = re.compile(rb"^mtllib (.*\S)", re.MULTILINE)
+
+
+def _numbered_obj_lines(content: bytes) -> Iterator[tuple[int, bytes]]:
+    """Yield the lines of an OBJ that state a vertex or a face, with their numbers in the file."""
+    number, end = 1, 0
+    for match in _OBJ_LINE.finditer(content):
+        number += content.count(b"\n", end, match.start())
+        end = match.start()
+        yield number, match[0]
+
+
+def _obj_vertices(path: Path, content: bytes, text: bytes) -> FloatArray:
+    if not text:
         return np.empty((0, 3))
-    try:
-        rows = [line.split()[1:4] for line in vertex_lines]
-        vertices = np.array(rows, dtype=np.float64)
-        if vertices.shape == (len(rows), 3) and np.isfinite(vertices).all():
+    with contextlib.suppress(ValueError):  # a line with fewer numbers, or with something else
+        vertices = np.loadtxt(io.BytesIO(text), np.float64, comments=None, usecols=(0, 1, 2), ndmin=2)
+        if np.isfinite(vertices).all() and len(vertices) == text.count(b"\n") + 1:
             return vertices
-    except ValueError:
-        pass
-    for number, line in enumerate(lines, 1):
-        if line.startswith((b"v ", b"v\t")) and (len(line.split()) < 4 or not _are_numbers(line.split()[1:4])):
+    for number, line in _numbered_obj_lines(content):
+        if line.startswith(b"v") and (len(line.split()) < 4 or not _are_numbers(line.split()[1:4])):
             raise _unreadable(path, f"line {number}", "a vertex needs three finite numbers")
     raise _unreadable(path, "vertices", "they are not rows of three numbers")
 
 
-def _obj_faces_one_by_one(path: Path, lines: list[bytes], total: int) -> NDArray[np.int64]:
+def _obj_triangles_at_once(text: bytes) -> NDArray[np.int64] | None:
+    """Return the faces as indices, or None unless all of them are triangles whose corners count from the first vertex."""
+    table = re.sub(rb"/\S*", b"", text)
+    if not table or table.translate(None, b"0123456789 \t\n"):
+        return None
+    with contextlib.suppress(ValueError):  # faces with different numbers of corners, or a number beyond 2⁶³
+        corners = np.loadtxt(io.BytesIO(table), np.int64, comments=None, ndmin=2)
+        if corners.shape == (table.count(b"\n") + 1, 3):
+            return corners - 1
+    return None
+
+
+def _obj_faces_one_by_one(path: Path, content: bytes, total: int) -> NDArray[np.int64]:
     """Read polygons, triangulated as fans from their first corner, and negative indices, which count back from the last vertex so far."""
     triangles: list[tuple[int, int, int]] = []
     known = 0
-    for number, line in enumerate(lines, 1):
-        if line.startswith((b"v ", b"v\t")):
+    for number, line in _numbered_obj_lines(content):
+        if line.startswith(b"v"):
             known += 1
-        if not line.startswith((b"f ", b"f\t")):
             continue
         try:
             corners = [int(word.split(b"/")[0]) for word in line.split()[1:]]
@@ -329,8 +354,15 @@ def _read_with_trimesh(path: Path, content: bytes) -> TriMesh:
     _require_whole(path, kind, content)
     unit = 1.0
     if kind == "dae":
-        unit, content = _unit_of_dae(content), _DAE_LOOKS.sub(b"", content)
+        unit, content = _unit_of_dae(content), _bounded_dae(path, _DAE_LOOKS.sub(b"", content))
+    elif kind in {"glb", "gltf"}:
+        _require_bounded_gltf(path, content)
+    elif content.partition(b"end_header")[0].find(b"ascii") >= 0:
+        _require_few(path, _words(content), MAX_WORDS, "words")
     scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, process=False)
+    _require_few(path, len(scene.graph.nodes_geometry), MAX_NODES, "placed shapes")
+    shapes = (scene.geometry[scene.graph[node][1]] for node in scene.graph.nodes_geometry)
+    _require_few(path, sum(len(getattr(shape, "faces", ())) for shape in shapes), MAX_TRIANGLES, "triangles")
     pieces = [piece for piece in scene.dump(concatenate=False) if isinstance(piece, trimesh.Trimesh)]
     meshes = [TriMesh(np.asarray(piece.vertices, dtype=np.float64) * unit, np.asarray(piece.faces, dtype=np.int32)) for piece in pieces]
     if not meshes:
@@ -349,6 +381,78 @@ def _unit_of_dae(content: bytes) -> float:
     if not 0 < unit < math.inf:
         raise ValueError(f"the unit of {unit} m is not a valid length")
     return unit
+
+
+def _bounded_dae(path: Path, content: bytes) -> bytes:
+    """Return a DAE as UTF-8 without a document type, whose nodes place few shapes.
+
+    Nodes may place other nodes, and those others again: thirty lines can place 2³⁰ shapes. The number of visits of a node's shapes is
+    the sum over the nodes that it places, counted once for each node.
+
+    Raises:
+        ReadError: If nodes place themselves, or more than `MAX_NODES` shapes in all.
+    """
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
+    root = etree.fromstring(content, parser)
+    if root.getroottree().docinfo.internalDTD is not None:
+        raise _unreadable(path, "line 1", "a DAE must be plain XML, without entities and not compressed")
+    nodes = {node.get("id"): node for node in root.iter("{*}node") if node.get("id")}
+    counts: dict[Any, float] = {}
+    stack = [(node, False) for node in root.iter("{*}node")]
+    opened = set()
+    while stack:
+        node, is_counted = stack.pop()
+        if node in counts:
+            continue
+        below = [*node.iterchildren("{*}node")]
+        below += [nodes[name] for use in node.iterchildren("{*}instance_node") if (name := use.get("url", "").lstrip("#")) in nodes]
+        if is_counted:
+            counts[node] = 1.0 + sum(counts[one] for one in below)
+            _require_few(path, counts[node], MAX_NODES, "placed shapes")
+            opened.discard(node)
+            continue
+        if node in opened:
+            raise _unreadable(path, f"line {node.sourceline}", "a node places itself")
+        opened.add(node)
+        stack.append((node, True))
+        stack += [(one, False) for one in below]
+    return bytes(etree.tostring(root, encoding="utf-8"))
+
+
+def _require_bounded_gltf(path: Path, content: bytes) -> None:
+    """Refuse a glTF that states too many triangles, nodes or other objects, before trimesh builds them.
+
+    Several primitives and nodes may share one buffer, so that the size of the file bounds nothing.
+    """
+    length = struct.unpack_from("<I", content, 12)[0] if content[:4] == b"glTF" else 0
+    text = content[20 : 20 + length] if content[:4] == b"glTF" else content
+    _require_few(path, sum(text.count(mark) for mark in (b"[", b"{", b",")), MAX_MARKS, "values")
+    document = json.loads(text)
+    nodes, accessors = document.get("nodes", []), document.get("accessors", [])
+    _require_few(path, len(nodes), MAX_NODES, "nodes")
+    uses = Counter(node.get("mesh") for node in nodes)
+    corners = 0
+    for number, mesh in enumerate(document.get("meshes", [])):
+        for primitive in mesh["primitives"]:
+            corner = primitive.get("indices", primitive.get("attributes", {}).get("POSITION"))
+            corners += max(uses[number], 1) * (accessors[corner]["count"] if corner is not None else 0)
+    _require_few(path, corners / 3, MAX_TRIANGLES, "triangles")
+    _require_few(path, sum(accessor["count"] for accessor in accessors), 12 * MAX_TRIANGLES, "values")
+
+
+def _words(content: bytes) -> int:
+    """Return the number of words in a text, without making a list of them."""
+    total, inside = 0, False
+    for at in range(0, len(content), 1 << 20):
+        word = np.frombuffer(content, np.uint8, min(1 << 20, len(content) - at), at) > ord(" ")
+        total += int(np.count_nonzero(word[1:] & ~word[:-1])) + int(word[0] and not inside)
+        inside = bool(word[-1])
+    return total
+
+
+def _require_few(path: Path, count: float, most: int, what: str) -> None:
+    if count > most:
+        raise _unreadable(path, "file", f"it has {count:.0f} {what}; the maximum is {most}")
 
 
 def _require_whole(path: Path, kind: str, content: bytes) -> None:

@@ -25,6 +25,8 @@ MAX_LINKS = 10_000
 MAX_SHAPES = 2_000  # shapes of one link
 MAX_ELEMENTS = 1_000_000  # of a file; a robot of 10,000 links has 200,000
 MAX_ATTRIBUTES = 200  # of one element; the parser compares each with each
+MAX_ATTRIBUTE = 16 << 20  # characters of one attribute: the vertices of a mesh in MJCF
+MAX_URDF_ATTRIBUTE = 1 << 16  # characters; URDF has names and at most six numbers in one
 MAX_DEPTH = 50_000  # nesting of elements: a chain of MAX_LINKS bodies, twice
 _FEW = 20_000  # equals signs up to which a file is parsed without a prior count: half a second at worst
 MM_PER_M = 1000.0
@@ -107,7 +109,7 @@ class _Counter:
     """Counts the elements of an XML text."""
 
     def __init__(self, path: Path) -> None:
-        self._path, self._elements, self._depth = path, 0, 0
+        self._path, self._elements, self._depth, self._longest = path, 0, 0, MAX_ATTRIBUTE
         self._parser = expat.ParserCreate()
         self._parser.ordered_attributes = True
         self._parser.StartElementHandler = self._start
@@ -117,8 +119,12 @@ class _Counter:
     def count(self, content: bytes) -> None:
         self._parser.Parse(content, True)  # noqa: FBT003 - the parser takes no keywords
 
-    def _start(self, _name: str, attributes: list[str]) -> None:
+    def _start(self, name: str, attributes: list[str]) -> None:
+        if not self._elements and name == "robot":
+            self._longest = MAX_URDF_ATTRIBUTE
         self._elements += 1
+        if attributes and (length := max(map(len, attributes))) > self._longest:
+            self._refuse(f"An attribute has {length} characters; the maximum is {self._longest}.")
         self._depth += 1
         if len(attributes) > 2 * MAX_ATTRIBUTES:
             self._refuse(f"An element has {len(attributes) // 2} attributes; the maximum is {MAX_ATTRIBUTES}.")

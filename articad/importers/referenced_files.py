@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from articad.errors import ReadError
+from articad.files import read_file
+from articad.geometry.mesh_files import MAX_FILE_BYTES
 from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
 
 MAX_FILES = 100  # largest number of files that include each other
@@ -21,6 +23,8 @@ MAX_COPIES = 1000  # largest number of copies by <replicate>, <composite> and th
 MAX_COPIED = 200_000  # elements of all copies
 MAX_POINTS = 1 << 24  # of textures and height fields that an engine makes: 4096 x 4096
 MAX_RESERVED = 1 << 20  # keyframes and user numbers that <size> reserves
+MAX_ALL_BYTES = 512 << 20  # of all files that an engine opens for a model
+MAX_GROUPS = 10_000  # groups and changes of material in one OBJ; engines make a shape of each
 MAX_NAMES = 100_000  # largest number of places in which named files may lie
 _IGNORED_SIZES = frozenset({"njmax", "nconmax", "nstack"})  # old names of memory, which the simulation bounds
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
@@ -37,7 +41,7 @@ def require_closed(path: Path, root: Path | None = None) -> None:
 
     Raises:
         ReadError: E_UNSAFE_PATH if a name leads out; E_READ if one of the files cannot be read, includes form a circle, or counts are
-            too large.
+            too large, or the files are.
     """
     _Closure(Folder.of(path, root)).follow(path.resolve())
 
@@ -58,6 +62,8 @@ class _Closure:
         self._folder = folder
         self._seen: list[Path] = []
         self._copied = 0  # elements, counted once per copy
+        self._named: set[Path] = set()
+        self._bytes = 0  # of the named files
         self._points = 0.0  # of textures and height fields without a file
 
     def follow(self, path: Path) -> None:
@@ -121,11 +127,13 @@ class _Closure:
         where = f"line {line}"
         if name.startswith("package://"):
             try:
-                return self._folder.find(name)
+                target = self._folder.find(name)
             except ReadError as error:
                 if "E_UNSAFE_PATH" in error.findings.codes:
                     raise
                 return base / "package:"  # there is no such file: engines report that themselves
+            self._require_small(target, name, file, where)
+            return target
         try:
             target = (base / name.removeprefix("file://")).resolve()
             is_other = target.exists() and not target.is_file() and not target.is_dir()
@@ -135,7 +143,24 @@ class _Closure:
             raise unreadable(file, where, f"{name!r} leads out of {self._folder.root}.", "E_UNSAFE_PATH")
         if is_other:
             raise unreadable(file, where, f"{name!r} is neither a file nor a folder but a pipe, a socket or a device.", "E_UNSAFE_PATH")
+        self._require_small(target, name, file, where)
         return target
+
+    def _require_small(self, target: Path, name: str, file: Path, where: str) -> None:
+        """Refuse a file that is too large for an engine, or too large together with those before it."""
+        if target in self._named or not target.is_file():
+            return
+        size = target.stat().st_size
+        self._named.add(target)
+        self._bytes += size
+        if size > MAX_FILE_BYTES:
+            raise unreadable(file, where, f"{name!r} has {size} bytes; the maximum is {MAX_FILE_BYTES}.")
+        if target.suffix.lower() == ".obj":
+            content = read_file(target, MAX_FILE_BYTES)
+            if (groups := sum(content.count(word) for word in (b"\ng ", b"\no ", b"\nusemtl "))) > MAX_GROUPS:
+                raise unreadable(file, where, f"{name!r} has {groups} groups and changes of material; the maximum is {MAX_GROUPS}.")
+        if self._bytes > MAX_ALL_BYTES:
+            raise unreadable(file, where, f"The files named up to here have {self._bytes} bytes; the maximum is {MAX_ALL_BYTES}.")
 
 
 def _read_by_engines(document: Any) -> Iterator[Any]:

@@ -16,6 +16,7 @@ from articad.importers.reading import Folder, read_xml, unreadable
 
 __all__ = ["COMPUTED", "kept_semantics", "semantics_beside"]
 
+MAX_KEPT: Final = 100_000  # elements that are kept: the pairs of 450 links
 COMPUTED: Final = frozenset({"Adjacent", "Never", "Default"})
 """Reasons of `<disable_collisions>` that `write_urdf` gives for the pairs that it finds itself."""
 
@@ -52,6 +53,8 @@ def kept_semantics(path: Path, *, own: bool = False) -> list[Kept]:
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <robot>: this is not SRDF.")
     if document.find("joint/parent") is not None or document.find("link/*") is not None:
         raise unreadable(path, f"line {document.sourceline}", "It has links or joints: this is a URDF, not its SRDF.")
+    if len(document) > MAX_KEPT:
+        raise unreadable(path, f"line {document.sourceline}", f"It has {len(document)} elements; the maximum is {MAX_KEPT}.")
     return [
         Kept("srdf", "model", _words(element), etree.tostring(element, encoding="unicode", with_tail=False))
         for element in document

@@ -266,13 +266,13 @@ def _require_numbers(document: Any, path: Path) -> None:
                 numbers = [float(word) for word in (text.replace(",", " ") if name in {"size", "scale"} else text).split()]
             except ValueError:
                 if element.tag in _MEASURED:
-                    raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a number.") from None
+                    raise unreadable(path, f"line {element.sourceline}", f"{name}={text[:60]!r} is not a number.") from None
                 continue
             if element.tag in _MEASURED and len(numbers) not in _COUNTS.get(name, (1,)) and (numbers or element.tag != "dynamics"):
                 raise unreadable(
                     path,
                     f"line {element.sourceline}",
-                    f"{name}={text!r} has {len(numbers)} numbers, not {' or '.join(map(str, _COUNTS.get(name, (1,))))}.",
+                    f"{name}={text[:60]!r} has {len(numbers)} numbers, not {' or '.join(map(str, _COUNTS.get(name, (1,))))}.",
                 )
             infinite_limit = element.tag == "limit"  # an infinite limit means none
             if any(math.isnan(number) or (abs(number) > _LARGEST and not infinite_limit) for number in numbers):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import signal
 import sys
 from pathlib import Path
 from typing import Any, Final
@@ -24,7 +25,8 @@ __all__ = ["expanded"]
 
 INSTALL: Final = "pip install 'articad[xacro]'"
 BY_HAND: Final = "or run `xacro FILE.urdf.xacro > FILE.urdf` and read what it writes"
-SECONDS: Final = 30.0
+SECONDS: Final = 30.0  # of wall time: a busy machine may need them for what takes a second of its processor
+PROCESSOR: Final = 7  # seconds of processor time; the largest robots of ROS packages take 2
 MEMORY: Final = 1 << 30  # bytes
 
 
@@ -50,10 +52,12 @@ def expanded(path: Path, root: Path | None = None) -> bytes:
         )
     own = (root or package_of(path)).resolve()
     order = {"file": str(path.resolve()), "layers": layers, "readable": [str(own), *map(str, environment_folders())]}
-    limits = launcher.Limits(seconds=SECONDS, memory=MEMORY)
+    limits = launcher.Limits(seconds=SECONDS, memory=MEMORY, processor=PROCESSOR)
     ended = launcher.run([json.dumps(order)], module="articad.importers.xacro", limits=limits)
     if ended.late or ended.code != 0:
         why = f"it did not end within {SECONDS:g} s" if ended.late else ended.last_line
+        if ended.code == -signal.SIGKILL and not ended.late:
+            why = f"it did not end within {PROCESSOR} s of processor time"
         raise _error(
             path,
             f"{path}: xacro fails: {why}",

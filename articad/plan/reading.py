@@ -39,6 +39,7 @@ _ELSEWHERE = {  # joint names of URDF, MJCF, SDF, USD and CAD systems
     "spherical": "ball",
     "weld": "fixed",
 }
+MOST_FINDINGS = 1000  # of one plan that are put into words
 _LIMIT_KEYS = ("angle_deg", "travel_mm", "rest_deg", "rest_mm", "cone_deg", "twist_deg", "lead_mm", "x_mm", "y_mm", "a_deg", "b_deg")
 
 
@@ -111,7 +112,10 @@ def from_json(form: type[F], document: Any) -> F:
         return form.model_validate(document)
     except ValidationError as error:
         details = error.errors(include_url=False)
-    raise _refused([_translated(form, document, detail) for detail in details]) from None
+    found = [_translated(form, document, detail) for detail in details[:MOST_FINDINGS]]
+    if (more := len(details) - len(found)) > 0:
+        found.append(_finding("E_SCHEMA", "plan", f"There are {more} more errors, which are not listed.", "Correct the listed ones first."))
+    raise _refused(found) from None
 
 
 def _unique_keys(pairs: list[tuple[str, Any]], repeated: dict[str, None]) -> dict[str, Any]:

@@ -63,6 +63,7 @@ class Limits:
 
     Attributes:
         seconds: Wall time until it is killed with its group; its processor time is limited to twice that on each processor, in case nothing enforces the wall time.
+        processor: Processor time of each of its processes, in whole seconds, if it has a limit of its own; the kernel then ends the process with SIGKILL.
         memory: Private data of each of its processes [bytes].
         file_size: Largest size of each file that it writes [bytes].
     """
@@ -70,10 +71,13 @@ class Limits:
     seconds: float | None = None
     memory: int | None = None
     file_size: int | None = None
+    processor: int | None = None
 
     def resources(self) -> dict[str, int]:
         """Return the limits that the kernel enforces, by their names in `resource`."""
-        cpu = None if self.seconds is None else int(2 * self.seconds * (os.cpu_count() or 1)) + 1
+        cpu = self.processor
+        if cpu is None and self.seconds is not None:
+            cpu = int(2 * self.seconds * (os.cpu_count() or 1)) + 1
         limits = {"CPU": cpu, "DATA": self.memory, "FSIZE": self.file_size, "CORE": 0}
         return {name: value for name, value in limits.items() if value is not None}
 

@@ -13,6 +13,7 @@ from articad.errors import ReadError
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.urdf import read_urdf
+from tests.hostile_files import robot
 
 WORLD = "<mujoco><worldbody>{}</worldbody></mujoco>"
 GEOM = '<geom size="0.1"/>'
@@ -179,3 +180,52 @@ def test_archives_are_unpacked_within_bounds(write: Callable[[Path], None], tmp_
     write(path)
     with pytest.raises(ReadError, match=r"too large|cannot be unpacked|not XML"):
         read_freecad(path)
+
+
+def test_a_urdf_has_no_attribute_of_a_megabyte(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_text(f'<robot name="r"><link name="a"><inertial><origin xyz="{"1 " * 40_000}"/></inertial></link></robot>')
+    with pytest.raises(ReadError, match="80000 characters; the maximum is 65536"):
+        read_urdf(path)
+
+
+def test_a_mesh_in_mjcf_may_have_long_attributes(tmp_path: Path) -> None:
+    corners = " ".join(f"{x} {y} {z}" for x in range(40) for y in range(40) for z in (0, 1, 2, 3))
+    path = tmp_path / "a.xml"
+    assert len(corners) > 1 << 15
+    path.write_text(
+        f'<mujoco><asset><mesh name="m" vertex="{corners}"/></asset><worldbody><geom type="mesh" mesh="m"/></worldbody></mujoco>'
+    )
+    assert read_mjcf(path).parts
+
+
+def test_elements_of_an_srdf_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.importers.srdf.MAX_KEPT", 10)
+    (tmp_path / "a.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+    for count in (10, 11):
+        (tmp_path / "a.srdf").write_text(robot('<disable_collisions link1="a" link2="b"/>' * count))
+        if count == 10:
+            assert len(read_urdf(tmp_path / "a.urdf").kept) == 10
+        else:
+            with pytest.raises(ReadError, match="11 elements; the maximum is 10"):
+                read_urdf(tmp_path / "a.urdf")
+
+
+@pytest.mark.parametrize("kind", ["one file", "all files", "groups"])
+def test_files_that_an_engine_would_open_are_measured_before(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their sizes, and the groups of an OBJ: PyBullet took more than a minute of the processor for half a million of them."""
+    monkeypatch.setattr("articad.auditing.examine.load_in_all", never)
+    written, reason = {
+        "one file": ({"a.stl": 129 << 20}, "135266304 bytes; the maximum is 134217728"),
+        "all files": ({f"{number}.stl": 120 << 20 for number in range(5)}, "629145600 bytes; the maximum is 536870912"),
+        "groups": ({"a.obj": 0}, "10001 groups and changes of material; the maximum is 10000"),
+    }[kind]
+    for name, size in written.items():
+        with (tmp_path / name).open("wb") as file:
+            file.write(b"\ng a" * 10_001 if kind == "groups" else b"")
+            file.truncate(size or file.tell())
+    meshes = "".join(f'<collision><geometry><mesh filename="{name}"/></geometry></collision>' for name in written)
+    (tmp_path / "a.urdf").write_text(f'<robot name="r"><link name="a">{meshes}</link></robot>')
+    audit = audit_file(tmp_path / "a.urdf")
+    assert reason in " ".join(finding.message for finding in audit.findings)
+    assert not audit.findings.ok

@@ -78,3 +78,12 @@ def test_a_file_that_never_ends_is_ended(tmp_path: Path, monkeypatch: pytest.Mon
     path = package(tmp_path / "mine", "robot", f'{HEAD}<link name="${{sum(x * y for x in range(10**5) for y in range(10**5))}}"/></robot>')
     with pytest.raises(ReadError, match=r"did not end within 3 s|xacro fails"):
         read(path)
+
+
+def test_macros_that_double_end_with_their_processor_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(xacro, "PROCESSOR", 2)
+    doubled = "".join(f'<xacro:macro name="m{i}"><xacro:m{i - 1}/><xacro:m{i - 1}/></xacro:macro>' for i in range(1, 40))
+    path = tmp_path / "a.urdf.xacro"
+    path.write_text(f'{HEAD}<xacro:macro name="m0"><b/></xacro:macro>{doubled}<xacro:m39/></robot>')
+    with pytest.raises(ReadError, match="it did not end within 2 s of processor time"):
+        read(path)

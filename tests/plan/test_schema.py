@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -439,3 +440,11 @@ def test_no_value_anywhere_escapes_as_another_error(value: Any) -> None:
     ):
         with contextlib.suppress(PlanError):
             AssemblyPlan.from_json(changed(*path, value=value))
+
+
+def test_a_thousand_faults_are_put_into_words_and_the_rest_counted() -> None:
+    """A plan of 100,000 empty parts has 300,000 faults."""
+    with pytest.raises(PlanError) as caught:
+        AssemblyPlan.from_json({"name": "a", "parts": [{"name": f"p{number}"} for number in range(2000)], "joints": []})
+    assert len(caught.value.findings) == 1001
+    assert any(re.search(r"There are \d+ more errors", finding.message) for finding in caught.value.findings)
