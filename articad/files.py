@@ -92,6 +92,16 @@ def is_file(path: str | Path, *, root: str | Path | None = None) -> bool:
     return True
 
 
+def differs(path: str | Path, content: bytes) -> bool:
+    """Return whether there is anything at a path but a regular file with this content; False if nothing is there."""
+    try:
+        return read_file(path, len(content)) != content
+    except FileNotFoundError:
+        return False
+    except OSError:
+        return True
+
+
 def _root_of(path: Path, root: str | Path | None) -> str | Path | None:
     """Return the root that applies to a path: the given one, unless everything that this process reads has to lie below another.
 

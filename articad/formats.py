@@ -21,6 +21,7 @@ from articad.export.step import write_step
 from articad.export.threemf import write_3mf
 from articad.export.urdf import write_urdf
 from articad.export.usd import write_usd
+from articad.files import RECORD_BYTES, differs, read_file
 from articad.findings import Finding
 from articad.geometry.mesh_files import MADE_BY_ARTICAD
 from articad.importers.freecad import read_freecad
@@ -194,21 +195,26 @@ def _require_free(bundle: Bundle, path: Path) -> None:
     hint = f"Write {elsewhere.as_posix()}, or another file in a folder of its own."
     if path.is_dir():
         raise _replaces(path, f"{path} is a folder.", f"Name a file in it, such as {(path / path.name).as_posix()}.")
-    changed = [
-        name
-        for name, content in bundle.files.items()
-        if name != bundle.main and (path.parent / name).is_file() and (path.parent / name).read_bytes() != content
-    ]
+    changed = [name for name, content in bundle.files.items() if name != bundle.main and differs(path.parent / name, content)]
     beside = [other for other in path.parent.iterdir() if other.suffix.lower() in _NAMING and other.name != path.name] if changed else []
-    texts = {other: other.read_bytes() for other in beside if other.is_file()}
+    texts = {other: text for other in beside if (text := _text_of(other)) is not None}
     for name in changed:
         there = path.parent / name
-        if there.suffix == ".FCStd" and not is_part_file(there.read_bytes()):
+        text = _text_of(there) or b""
+        if there.suffix == ".FCStd" and not is_part_file(text):
             raise _replaces(there, f"{there} is another document, which articad did not write.", hint)
-        if there.suffix != ".FCStd" and not there.read_bytes().startswith(MADE_BY_ARTICAD):
+        if there.suffix != ".FCStd" and not text.startswith(MADE_BY_ARTICAD):
             raise _replaces(there, f"{there} is another mesh, which articad did not write.", hint)
         if user := next((other for other, text in texts.items() if name.encode() in text), None):
             raise _replaces(there, f"{there} is another mesh, which {user.name} names.", hint)
+
+
+def _text_of(path: Path) -> bytes | None:
+    """Return the content of a file in the target's folder, or None if it is not a regular file or too large."""
+    try:
+        return read_file(path, RECORD_BYTES)
+    except OSError:
+        return None
 
 
 def _replaces(path: Path, message: str, hint: str) -> ExportError:

@@ -21,6 +21,7 @@ from articad.auditing.step_parts import audit_step
 from articad.auditing.urdf_text import UrdfText
 from articad.certificates.certificate import Certificate
 from articad.errors import ArticadError, ReadError
+from articad.files import is_file
 from articad.findings import Finding, Findings
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
@@ -113,6 +114,7 @@ def audit_made(assembly: Assembly, folder: str | Path, choices: AuditOptions | N
     is_run = (Path(folder) / REQUEST_FILE).is_file()
     found = audit_assembly(assembly, str(folder), "run" if is_run else "plan", choices)
     exports = sorted(path for path in Path(folder).glob("export/*/*") if path.suffix.lower() in AUDITED) if is_run else []
+    exports = [path for path in exports if is_file(path, root=folder)]
     return _with_engines(found, exports) if (choices or AuditOptions()).engines else found
 
 

@@ -30,7 +30,7 @@ from articad.export.markup import child, document, number, numbers, rpy, tidy
 from articad.export.mjcf import STL_TRIANGLES
 from articad.export.names import Names
 from articad.export.urdf import write_urdf
-from articad.files import read_file
+from articad.files import differs, read_file
 from articad.geometry.inscribed import Piece
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
@@ -384,7 +384,7 @@ def _meshes(root: Any, references: MeshReferences, mended: Mended, kept: Path | 
                 content = write_stl(raw) if suffix == ".stl" else write_obj(raw)
                 converted.append(path.name)
             name = f"meshes/{names.claim(path.stem)}{suffix}"
-            while kept is not None and (kept / name).is_file() and (kept / name).read_bytes() != content:
+            while kept is not None and differs(kept / name, content):
                 name = f"meshes/{names.claim(path.stem)}{suffix}"
             taken[path] = name
             files[taken[path]] = content

@@ -116,7 +116,7 @@ def make(item: BatchItem, out: str | Path) -> Json:
     """
     folder = Path(out) / item.digest[:2] / item.digest
     with contextlib.suppress(OSError, ValueError):
-        return {**json.loads((folder / ITEM).read_text(encoding="utf-8")), "made": "before"}
+        return {**json.loads(read_file(folder / ITEM, PLAN_BYTES, root=folder)), "made": "before"}
     with scratch.folder_beside(folder) as empty:
         record = _made(item, empty)
         (empty / ITEM).write_text(json.dumps(record, indent=1, ensure_ascii=False, sort_keys=True) + "\n", encoding="utf-8")

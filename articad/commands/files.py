@@ -138,11 +138,11 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
 )
 def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
     import json
-    import shutil
 
     from articad.commands import summaries
     from articad.commands.steps import sandbox_level
     from articad.errors import WriteError
+    from articad.files import SCRIPT_BYTES, read_file
     from articad.kernels.cache import BuildCache
     from articad.kernels.choice import kernel_named
     from articad.runs.adopt import adopt
@@ -158,7 +158,8 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
     files = bundle.write(folder)
     if options.script is not None:
         (folder / "source").mkdir()
-        files.append(Path(shutil.copy(options.script, folder / "source")))
+        files.append(folder / "source" / Path(options.script).name)
+        files[-1].write_bytes(read_file(options.script, SCRIPT_BYTES))
     summaries.print_exports({"plan": bundle.to_json() | {"main": str(files[0])}}, terminal)
     report = bundle.to_json() | {"schema": "articad.adopt/1", "folder": str(folder), "files": [str(file) for file in files]}
     report |= {"parts": len(assembly.parts), "joints": len(assembly.joints), "freedoms": assembly.mechanism.mobility}

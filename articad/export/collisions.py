@@ -5,6 +5,7 @@ Convex pieces lie inside the solids. So they touch only where the solids touch, 
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -175,7 +176,7 @@ def _features(name: str, kind: Collision, formed: list[_Formed]) -> list[Feature
 
 def adjacent(assembly: Assembly, pair: Pair) -> str:
     """Return why two parts that share joints do not collide: they touch by design there, or they were not checked."""
-    joints = ", ".join(joint.name for joint in assembly.mechanism.joints if {joint.parent, joint.child} == set(pair))
+    joints = ", ".join(once(assembly, "names of joints", lambda: _names_of_joints(assembly))[frozenset(pair)])
     a, b = pair
     gap = once(assembly, ("gap", pair), lambda: _gap(assembly, pair))
     if gap is None:
@@ -183,6 +184,14 @@ def adjacent(assembly: Assembly, pair: Pair) -> str:
     if gap < TOUCHING_MM:
         return f"adjacent: {a} and {b} touch by design at joint {joints}: the gap at rest is {gap:.2g} mm"
     return f"not checked: joint {joints} connects {a} and {b}, whose solids are more than {TOUCHING_MM:g} mm apart at rest"
+
+
+def _names_of_joints(assembly: Assembly) -> defaultdict[frozenset[str], list[str]]:
+    """Return the names of the joints between two parts."""
+    names: defaultdict[frozenset[str], list[str]] = defaultdict(list)
+    for joint in assembly.mechanism.joints:
+        names[frozenset((joint.parent, joint.child))].append(joint.name)
+    return names
 
 
 def _gap(assembly: Assembly, pair: Pair) -> float | None:

@@ -23,6 +23,7 @@ from articad.export.freecad_split import content_of_files
 from articad.export.freecad_split import split as divided
 from articad.export.losses import refuse
 from articad.export.product import of_the_product
+from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.kernels import freecad_install
 from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
@@ -69,8 +70,8 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
         ended = freecad.run(PROGRAM, folder=folder, limits=FreeCADLimits(seconds=seconds))
         if not ended.ok or not (folder / "report.json").is_file():
             raise _failed(ended.said, late=ended.late)
-        report = json.loads((folder / "report.json").read_text())
-        content = (folder / "assembly.FCStd").read_bytes()
+        report = json.loads(read_file(folder / "report.json", RECORD_BYTES, root=folder))
+        content = read_file(folder / "assembly.FCStd", RECORD_BYTES, root=folder)
     look = Appearance(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"], tuple(report["tips"]))
     files = _files(job.name, content, look, split=split)
     return Bundle(files, job.losses, verify(files, assembly, freecad))

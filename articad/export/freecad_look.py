@@ -17,6 +17,7 @@ import numpy as np
 from articad.aliases import Json
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
+from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.geometry.part import Part
 from articad.kernels import freecad_install
@@ -81,7 +82,7 @@ def looked(content: bytes | Mapping[str, bytes], freecad: FreeCAD, *, parts: int
         ended = freecad.run(PROGRAM, folder=folder, limits=FreeCADLimits(seconds=_SECONDS + _SECONDS_A_PART * parts))
         if not (folder / "report.json").is_file():
             raise OSError("it ran out of time" if ended.late else last_words(ended.said))
-        report: Json = json.loads((folder / "report.json").read_text())
+        report: Json = json.loads(read_file(folder / "report.json", RECORD_BYTES, root=folder))
     (step,) = report["steps"]
     return dict(step)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -40,14 +41,21 @@ def mating_pairs(joints: tuple[Joint, ...], order: tuple[str, ...]) -> list[Pair
 def rigid_groups(joints: tuple[Joint, ...], order: tuple[str, ...]) -> dict[str, int]:
     """Return for each part the number of its rigid group: parts joined by fixed joints only have the same one."""
     group = {part: index for index, part in enumerate(order)}
+    members = {index: [part] for index, part in enumerate(order)}
     for joint in joints:
-        if joint.type is JointType.FIXED:
-            old, new = group[joint.child], group[joint.parent]
-            group = {part: new if number == old else number for part, number in group.items()}
+        old, new = group[joint.child], group[joint.parent]
+        if joint.type is not JointType.FIXED or old == new:
+            continue
+        if len(members[old]) > len(members[new]):  # the smaller group is renumbered: each part at most log2(parts) times
+            old, new = new, old
+        group |= dict.fromkeys(members[old], new)
+        members[new] += members.pop(old)
     return group
 
 
 def same_group_pairs(joints: tuple[Joint, ...], order: tuple[str, ...]) -> set[Pair]:
     """Return the pairs of parts that never move relative to each other."""
-    group = rigid_groups(joints, order)
-    return {(a, b) for a, b in combinations(order, 2) if group[a] == group[b]}
+    group, members = rigid_groups(joints, order), defaultdict[int, list[str]](list)
+    for part in order:
+        members[group[part]].append(part)
+    return {pair for parts in members.values() for pair in combinations(parts, 2)}

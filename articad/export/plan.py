@@ -78,14 +78,18 @@ class _Names:
 
     def __init__(self, wanted: Iterable[str]) -> None:
         self._names: dict[str, str] = {}
+        self._taken: set[str] = set()
+        self._numbers: dict[str, int] = {}  # the next number to try for a name that is taken
         for name in wanted:
             self._names[name] = self._free(plan_name(name))
 
     def _free(self, name: str) -> str:
-        taken, number, free = set(self._names.values()), 2, name
-        while free in taken:
+        number, free = self._numbers.get(name, 2), name
+        while free in self._taken:
             tail = f"_{number}"
             free, number = name[: MAX_NAME - len(tail)].rstrip("_") + tail, number + 1
+        self._taken.add(free)
+        self._numbers[name] = number
         return free
 
     def __getitem__(self, name: str) -> str:

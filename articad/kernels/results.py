@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from articad.aliases import Json
 from articad.errors import InvalidSolidError
+from articad.files import UnsafeFileError, read_file
 from articad.geometry.mesh import TriMesh
 
 REPORT_BYTES = 2**20
@@ -45,10 +46,9 @@ def read_lines(path: Path) -> list[Json]:
     Raises:
         PoisonedError: If it is too large or not JSON.
     """
-    if path.stat().st_size > REPORT_BYTES:
-        raise PoisonedError(f"{path.name} has {path.stat().st_size} bytes")
+    content = read_bytes(path, REPORT_BYTES)
     try:
-        lines = [json.loads(line, parse_constant=_refuse) for line in path.read_bytes().split(b"\n")[:-1]]
+        lines = [json.loads(line, parse_constant=_refuse) for line in content.split(b"\n")[:-1]]
     except (ValueError, RecursionError) as error:
         raise PoisonedError(f"{path.name} is not JSON") from error
     if not all(isinstance(line, dict) for line in lines):
@@ -138,9 +138,10 @@ def read_bytes(path: Path, limit: int = MESH_BYTES) -> bytes:
     Raises:
         PoisonedError: If it is larger than the limit [bytes].
     """
-    if path.stat().st_size > limit:
-        raise PoisonedError(f"{path.name} has {path.stat().st_size} bytes")
-    return path.read_bytes()
+    try:
+        return read_file(path, limit)
+    except UnsafeFileError as error:
+        raise PoisonedError(f"{path.name}: {error.strerror}") from None
 
 
 def _refuse(constant: str) -> None:

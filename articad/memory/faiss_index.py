@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.errors import ReadError
+from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding
 from articad.memory.embedding import FloatArray
 from articad.runs.run import write_atomically
@@ -20,7 +21,7 @@ def load(folder: Path, label: str, stamp: str) -> Any | None:
     faiss = _faiss()
     path = _path(folder, label)
     try:
-        head, _, content = path.read_bytes().partition(b"\n")
+        head, _, content = read_file(path, RECORD_BYTES).partition(b"\n")
         if head != stamp.encode() + hashlib.sha256(content).hexdigest().encode():
             return None
         return faiss.deserialize_index(np.frombuffer(content, np.uint8))

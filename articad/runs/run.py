@@ -735,7 +735,7 @@ def _read_request(path: Path) -> RunRequest:
 
 def _locked(path: Path) -> int:
     with _writing(path):
-        handle = os.open(path, os.O_RDONLY)
+        handle = os.open(path, os.O_RDONLY | getattr(os, "O_DIRECTORY", 0))
     if fcntl is not None:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)

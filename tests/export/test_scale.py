@@ -5,16 +5,21 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable
-from itertools import combinations
+from itertools import combinations, pairwise
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from articad.assembly import Assembly
+from articad.export.collisions import _names_of_joints
 from articad.export.contacts import ContactSearch
+from articad.export.hulls import rigid_groups, same_group_pairs
+from articad.export.plan import _Names
 from articad.formats import NAMED
 from articad.interference.boxes import meeting_boxes
+from articad.kinematics.joints import JointType
 from tests.chains import chain
 
 FEW, MANY = 40, 160
@@ -89,3 +94,66 @@ def test_boxes_that_meet_are_those_that_a_comparison_of_all_finds(seed: int) -> 
 @pytest.mark.parametrize("name", [*EXPORTS, "step"])
 def test_two_thousand_parts_are_written(name: str) -> None:
     assert math.isfinite(len(NAMED[name].writer(chain(2000)).files))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_rigid_groups_are_what_walks_over_fixed_joints_reach(seed: int) -> None:
+    """Random trees and circles of joints, against a search from each part."""
+    chance = np.random.default_rng(seed)
+    order = tuple(f"part{number}" for number in range(int(chance.integers(1, 30))))
+    kinds = (JointType.FIXED, JointType.REVOLUTE)
+    chosen = [(*chance.choice(order, 2), kinds[int(chance.random() < 0.5)]) for _ in range(int(chance.integers(0, 40)))]
+    joints: Any = tuple(SimpleNamespace(parent=parent, child=child, type=kind) for parent, child, kind in chosen)
+
+    def reached(start: str) -> set[str]:
+        found, left = {start}, [start]
+        while left:
+            here = left.pop()
+            for joint in joints:
+                ends = {joint.parent, joint.child}
+                if joint.type is JointType.FIXED and here in ends:
+                    left += sorted(ends - found)
+                    found |= ends
+        return found
+
+    group = rigid_groups(joints, order)
+    for part in order:
+        assert {other for other in order if group[other] == group[part]} == reached(part)
+    expected = {(a, b) for a, b in combinations(order, 2) if b in reached(a)}
+    assert same_group_pairs(joints, order) == expected
+
+
+def test_grouping_costs_as_much_per_part_of_a_long_chain() -> None:
+    def joined(count: int) -> int:
+        order = tuple(f"p{number}" for number in range(count))
+        ends = list(pairwise(order))
+        joints: Any = tuple(SimpleNamespace(parent=a, child=b, type=JointType.FIXED) for a, b in reversed(ends))
+        lines = 0
+
+        def counted(_frame: object, event: str, _argument: object) -> Any:
+            nonlocal lines
+            lines += event == "line"
+            return counted
+
+        sys.settrace(counted)
+        try:
+            rigid_groups(joints, order)
+        finally:
+            sys.settrace(None)
+        return lines
+
+    assert joined(800) / 800 <= MOST_PER_PART * joined(80) / 80
+
+
+def test_names_of_a_plan_that_are_equal_are_numbered_in_turn() -> None:
+    wanted = [f"Part {'!' * number}" for number in range(2000)]
+    names = _Names(wanted)
+    assert [names[name] for name in wanted] == ["part", *(f"part_{number}" for number in range(2, 2001))]
+
+
+def test_names_of_joints_are_those_between_the_two_parts() -> None:
+    assembly = chain(5)
+    names = _names_of_joints(assembly)
+    for a, b in combinations(assembly.parts, 2):
+        expected = [joint.name for joint in assembly.mechanism.joints if {joint.parent, joint.child} == {a, b}]
+        assert names[frozenset((a, b))] == expected
