@@ -5,7 +5,7 @@ python -m venv OTHER; OTHER/bin/pip install -r tests/export/simready.lock
 ARTICAD_ENGINES=DIR/bin/python ARTICAD_SIMREADY=OTHER/bin/python .venv/bin/python -m tests.export.judges [NAME …] [--without JUDGE] [--again]
 
 runs MuJoCo, PyBullet, Newton, Pinocchio, simcheck, check_urdf and the validators of USD and SimReady on the exports of each model, keeps what they say in
-docs/reference/simulators.json, and writes docs/reference/simulators.md. A judge that has judged the same files is not asked again, unless
+docs/reference/simulators.json, and writes docs/reference/simulators.md and the table of README. A judge that has judged the same files is not asked again, unless
 `--again` is given.
 """
 
@@ -41,6 +41,8 @@ from articad_bench.task import tasks_in
 ROOT: Final = Path(__file__).resolve().parents[2]
 RECORD: Final = ROOT / "docs" / "reference" / "simulators.json"
 PAGE: Final = RECORD.with_suffix(".md")
+README: Final = ROOT / "README.md"
+MARKS: Final = ("<!-- simulators: written by tests.export.judges -->", "<!-- end of simulators -->")
 PYTHON: Final = os.environ.get("ARTICAD_ENGINES", "")
 SIMREADY: Final = os.environ.get("ARTICAD_SIMREADY", "")  # its rules would join those of the USD validator in one environment
 SECONDS: Final = 900.0
@@ -314,6 +316,34 @@ def page(record: Mapping[str, Mapping[str, Any]]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def summary(record: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the part of README that says what was measured, by engine and file: a table between two comments."""
+    lines = [
+        MARKS[0],
+        "| engine or checker | file | models judged | without objection | joints driven | smallest share of a range |",
+        "|---" * 6 + "|",
+    ]
+    others = [name for name in OTHERS if name.split()[0] not in {"Pinocchio", "check_urdf"}]
+    for judge in [f"{engine} {kind}" for engine in SIMULATORS for kind in ("mjcf", "urdf", "usd")] + others:
+        said = {name: row[judge] for name, row in record.items() if judge in row and row[judge]["words"] != SITES.words}
+        if not said:
+            continue
+        wrong = sorted(name for name, one in said.items() if one["passed"] is False)
+        driven = [(float(share), int(count)) for one in said.values() for share, count in re.findall(r"^([\d.]+) % of (\d+)", one["words"])]
+        argued = sorted(name for name, one in said.items() if one["passed"] is None and re.match(r"[1-9]\d* errors", one["words"]))
+        passed = f"{len(said) - len(wrong) - len(argued)}" + (f"; not {', '.join(wrong)}" if wrong else "")
+        passed += f"; {', '.join(argued)} in the pose zero only, where the loops are open" if argued else ""
+        reach = f"{sum(count for _, count in driven)} | {min(share for share, _ in driven):.4g} %" if driven else " | "
+        lines.append(f"| {judge.rpartition(' ')[0]} | {judge.rpartition(' ')[2].upper()} | {len(said)} | {passed} | {reach} |")
+    return "\n".join([*lines, MARKS[1]])
+
+
+def readme(text: str, record: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return README with the present `summary`."""
+    before, _, rest = text.partition(MARKS[0])
+    return before + summary(record) + rest.partition(MARKS[1])[2]
+
+
 def _tables(rows: Mapping[str, Mapping[str, Any]]) -> list[str]:
     lines = ["### Simulators", "", "| model | file | " + " | ".join(SIMULATORS) + " |", "|---" * (2 + len(SIMULATORS)) + "|"]
     for name, said in rows.items():
@@ -352,6 +382,7 @@ def main(words: list[str]) -> int:
         print(name, {judge: one.words for judge, one in said.items()}, flush=True)  # noqa: T201 - a command
         RECORD.write_text(json.dumps(record, indent=1, sort_keys=True) + "\n")
         PAGE.write_text(page(record))
+        README.write_text(readme(README.read_text(), record))
     return 0
 
 

@@ -26,3 +26,14 @@ def test_the_page_is_what_the_record_says() -> None:
 
     assert set(record) <= {*judges.example_names(), *judges.hard_names()}
     assert judges.PAGE.read_text() == judges.page(record)
+
+
+def test_readme_says_what_the_record_says() -> None:
+    record = json.loads(judges.RECORD.read_text())
+    text = judges.README.read_text()
+
+    assert judges.summary(record) in text
+    assert judges.readme(text, record) == text
+    changed = json.loads(json.dumps(record))
+    changed["four_bar"]["MuJoCo mjcf"] |= {"passed": False, "words": "diverges"}
+    assert "not four_bar" in judges.readme(text, changed)

@@ -120,7 +120,7 @@ def test_usd_core_reads_bodies_masses_and_joints_that_meet_at_rest(name: str, tm
         motion = joint.motion(configuration[joint.name]).matrix
         motion[:3, 3] /= 1000
         if joint.type is JointType.BALL and first == joint.child:  # its frames are not turned, so its quaternion is the inverse
-            motion = np.linalg.inv(motion)
+            motion = np.asarray(np.linalg.inv(motion), dtype=np.float64)
         assert np.allclose(near @ motion, far, atol=1e-6)  # local frames are single precision in UsdPhysics
 
 
