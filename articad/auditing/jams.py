@@ -30,22 +30,25 @@ def hull_jams(assembly: Assembly, filtered: frozenset[frozenset[str]] = frozense
         filtered: Pairs that the file excludes from collision.
     """
     solids = {name: shapes for name, part in assembly.parts.items() if (shapes := _closed(part.collisions))}
+    open_ = [name for name, part in assembly.parts.items() if part.collisions and name not in solids]
+    undone = [f"hulls: the collision meshes of {listed(open_)} are open, so whether their hulls jam is not known"] if open_ else []
     if len(solids) < 2:
-        return [], []
+        return [], undone
     triangles = sum(len(shape.mesh.triangles) for shapes in solids.values() for shape in shapes)
     if len(solids) > MOST_PARTS or triangles > MOST_TRIANGLES:
         return [], [
-            f"hulls: {len(solids)} parts have collision shapes of {triangles} triangles; at most {MOST_PARTS} and {MOST_TRIANGLES} are compared"
+            *undone,
+            f"hulls: {len(solids)} parts have collision shapes of {triangles} triangles; at most {MOST_PARTS} and {MOST_TRIANGLES} are compared",
         ]
     mechanism = assembly.mechanism
     search = ContactSearch(mechanism.parts, mechanism.at_rest[None].matrix, solids)
     for name, shapes in solids.items():
         search.update(name, shapes)
     if search.is_convex:
-        return [], []
+        return [], undone
     search.poses = poses_in_motion(mechanism)[:MOST_POSES]
     found = [contact for contact in search.contacts(_never_collide(assembly, filtered)) if not contact.solids]
-    return list(_findings(found)), []
+    return list(_findings(found)), undone
 
 
 def _closed(shapes: tuple[Shape, ...]) -> tuple[Shape, ...]:

@@ -54,6 +54,23 @@ def test_the_simulator_agrees_about_the_jam_and_its_repair(tmp_path: Path) -> No
     assert verdict.ok, str(verdict.findings)
 
 
+def test_what_encloses_nothing_is_not_said_to_be_free_of_jams(tmp_path: Path) -> None:
+    """Meshes of public robots are often open: the audit says that it does not know, and the repair that it leaves them."""
+    path = foreign(tmp_path, from_outside=True)
+    mesh = path.parent / "meshes/rail.stl"
+    content = mesh.read_bytes()
+    mesh.write_bytes(
+        content[:80] + (int.from_bytes(content[80:84], "little") - 1).to_bytes(4, "little") + content[84:-50]
+    )  # a triangle less
+
+    audit = audit_file(path, QUICK)
+
+    assert not audit.findings.of("W_AUDIT_HULL_JAM")
+    assert "hulls: the collision meshes of rail are open, so whether their hulls jam is not known" in audit.undone
+    mended = mend(path, tmp_path / "pieces", collision="pieces", choices=QUICK)
+    assert "left 1 collision mesh that enclose nothing: rail" in mended.done
+
+
 def test_neighbours_of_the_world_jam_and_other_neighbours_do_not(tmp_path: Path) -> None:
     """Engines skip neighbours, but not those of a part that is fixed to the world."""
     box = '<collision><geometry><mesh filename="meshes/rail.stl" scale="0.001 0.001 0.001"/></geometry></collision>'
