@@ -156,7 +156,7 @@ def described(document: Any) -> None:
 
 
 def library_material(document: Any) -> None:
-    import Materials  # type: ignore[import-not-found]
+    import Materials
 
     steel = next(item for item in Materials.MaterialManager().Materials.values() if item.Name.startswith("Steel"))
     of(document, "tray body").ShapeMaterial = steel
