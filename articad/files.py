@@ -102,6 +102,16 @@ def differs(path: str | Path, content: bytes) -> bool:
         return True
 
 
+def user_folder(variable: str, default: str) -> Path:
+    """Return a folder of the user's own: that of an XDG variable, or the default below the home folder.
+
+    A relative path in the variable is ignored, as the XDG Base Directory Specification requires: it would name a folder of whoever made
+    the working folder.
+    """
+    stated = Path(os.environ.get(variable, ""))
+    return stated if stated.is_absolute() else Path.home() / default
+
+
 def _root_of(path: Path, root: str | Path | None) -> str | Path | None:
     """Return the root that applies to a path: the given one, unless everything that this process reads has to lie below another.
 

@@ -357,6 +357,24 @@ FCSTDS: dict[str, Callable[[], bytes]] = {
     "levels": lambda: document("<a>" * 45_000 + "</a>" * 45_000),
     "nothing but a header": lambda: b"PK\3\4" + bytes(50_000_000),
 }
+
+
+def listing(folder: Path) -> str:
+    """A document that lists two hundred others, each a small archive of a large text."""
+    part = archive(Document_xml=b"<Document><Objects/><ObjectData/>" + b" " * (60 << 20) + b"</Document>")
+    for number in range(200):
+        (folder / f"{number}.FCStd").write_bytes(part)
+    (folder / "a.FCStd").write_bytes(archive(Document_xml=listing_document([f"{number}.FCStd" for number in range(200)])))
+    return "audit a.FCStd --budget 1"
+
+
+def listing_document(files: list[str]) -> bytes:
+    row = f'<Property name="ArticadFiles" type="App::PropertyString"><String value="{"&#10;".join(files)}"/></Property>'
+    data = f'<ObjectData Count="1"><Object name="A"><Properties>{row}</Properties></Object></ObjectData>'
+    return f'<Document SchemaVersion="4"><Objects Count="1"><Object name="A" type="Assembly::AssemblyObject"/></Objects>{data}</Document>'.encode()
+
+
+entry("fcstd: two hundred documents", listing)
 for _name, _data in FCSTDS.items():
     text(f"fcstd: {_name}", "a.FCStd", _data, AUDIT)
 

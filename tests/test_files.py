@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import ast
+import io
 import os
 import socket
+import tracemalloc
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +16,7 @@ import pytest
 import articad
 from articad import files
 from articad.errors import ArticadError, ExportError, ReadError
+from articad.export.freecad_split import is_part_file
 from articad.files import UnsafeFileError, differs, is_file, read_file
 from articad.formats import NAMED, write
 from articad.geometry.mesh_files import read_mesh
@@ -222,3 +226,24 @@ def test_a_mesh_in_the_way_of_an_export_that_is_no_file_is_not_replaced(kind: st
     special(kind, tmp_path / name)
     with pytest.raises(ExportError, match="which articad did not write"):
         write(chain(2), tmp_path / bundle.main)
+
+
+@pytest.mark.parametrize("kind", ["bomb", "damaged", "encrypted"])
+def test_a_document_in_the_way_of_an_export_is_unpacked_within_bounds(kind: str) -> None:
+    """A part's document of somebody else: 1 GiB of zeros in 1 MB, damaged data, an entry that needs a password."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("Document.xml", "w") as stream:
+        for _ in range(1 << 10 if kind == "bomb" else 1):
+            stream.write(bytes(1 << 20))
+    content = bytearray(packed.getvalue())
+    if kind == "damaged":
+        content[60:90] = bytes(30)
+    elif kind == "encrypted":
+        content[6] |= 1
+        content[content.index(b"PK\1\2") + 8] |= 1
+    tracemalloc.start()
+    try:
+        assert not is_part_file(bytes(content))
+        assert tracemalloc.get_traced_memory()[1] < 200 << 20
+    finally:
+        tracemalloc.stop()

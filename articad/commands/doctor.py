@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from articad.errors import KernelUnavailableError, TransportError
 from articad.findings import Finding
+from articad.kernels.cache import default_root
 from articad.kernels.libraries import PACKAGES
 from articad.processes import launcher
 
@@ -268,7 +269,7 @@ def _installed(name: str) -> bool:
 
 
 def _cache() -> Probe:
-    folder = Path(os.environ.get("ARTICAD_CACHE") or Path.home() / ".cache" / "articad")
+    folder = default_root()
     existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
     if os.access(existing, os.W_OK):
         return Probe("cache", "ok", str(folder))

@@ -20,6 +20,7 @@ from lxml import etree
 from articad.errors import ExportError
 from articad.export.freecad_content import Content, content_of
 from articad.findings import Finding
+from articad.kernels.archive import Archive, BadArchiveError
 from articad.kernels.freecad_file import EPOCH, packed, xml_parser
 
 FILES = "ArticadFiles"
@@ -31,6 +32,7 @@ _OF_LINKS = ("Label", "Label2", "Visibility", "ExpressionEngine", "Placement")  
 _NAMED = re.compile(r"(?<![\w.#>])([A-Za-z_]\w*)(?=\.[A-Za-z_])")  # the objects that an expression names
 _FILE_OF = re.compile(r"(?:<<[^<>]*>>|\b\w+)#")  # the file that it names before an object
 _OURS = "written by articad"  # in the comment of each part's file
+_ENTRIES, _DOCUMENT_BYTES = 20_000, 64 << 20  # of the file of a part that is in the way
 _OWN = "Articad"  # beginning of the names of articad's own properties
 
 
@@ -57,10 +59,9 @@ def split(content: bytes, folder: str) -> dict[str, bytes]:
 
 def is_part_file(content: bytes) -> bool:
     """Return whether `split` wrote a file, so that another export may replace it."""
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            return _OURS.encode() in archive.read("Document.xml")
-    except (zipfile.BadZipFile, KeyError, OSError):
+    try:  # it may be anybody's file: unpacked within bounds
+        return _OURS.encode() in Archive(content, entries=_ENTRIES, unpacked=_DOCUMENT_BYTES).read("Document.xml")
+    except BadArchiveError:
         return False
 
 

@@ -14,11 +14,13 @@ from articad.connectors.se3 import SE3
 from articad.errors import ArticadError, ReadError
 from articad.export.freecad_split import join, listed
 from articad.files import read_file
-from articad.importers.reading import LARGEST_MM, MAX_XML_BYTES, Folder, color_text, parse_xml, unreadable
+from articad.importers.reading import LARGEST_MM, MAX_ELEMENTS, MAX_XML_BYTES, Folder, color_text, parse_xml, unreadable
 from articad.kernels.archive import Archive, BadArchiveError
 
 MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 256 * 2**20, 384 * 2**20, 20_000
 MAX_FILES = 200  # that one document may link to, directly or not
+MAX_ALL_XML = 128 * 2**20  # bytes of Document.xml in a document and all that it links to
+MAX_ALL_BYTES = 512 * 2**20  # of their files
 MAX_DEPTH = 50  # of groups within groups and links to links
 MAX_MEMBERS = 20_000  # of groups of a document, each counted as often as it is shown
 
@@ -38,22 +40,27 @@ class FreeCADDocument:
         path: The file.
         types: Type by object.
         items: XML element by object.
+        sizes: Bytes of the file, bytes and elements of its Document.xml.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
-            self.archive = Archive(read_file(path, MAX_BYTES), entries=MAX_ENTRIES, unpacked=MAX_UNPACKED)
-            self.root = parse_xml(self.archive.read("Document.xml", MAX_XML_BYTES), path)
+            content = read_file(path, MAX_BYTES)
+            self.archive = Archive(content, entries=MAX_ENTRIES, unpacked=MAX_UNPACKED)
+            text = self.archive.read("Document.xml", MAX_XML_BYTES)
         except OSError as error:
             raise unreadable(path, "", f"It cannot be read: {error.strerror}.") from None
         except BadArchiveError as error:
             raise unreadable(path, "", f"It is not a FreeCAD file: {error}.") from None
+        self.root = parse_xml(text, path)
+        self.sizes = (len(content), len(text), sum(1 for _ in self.root.iter()))
         self._files: dict[str, tuple[Archive, str]] = {}  # entries of other files
         self._painted: dict[str, str] = {}  # colours of the objects of other files
-        self._index()
+        self.index()
 
-    def _index(self) -> None:
+    def index(self) -> None:
+        """Find the objects and their properties in the XML; again after documents were taken."""
         self.types = {item.get("name", ""): item.get("type", "") for item in self.root.iterfind("Objects/Object")}
         self.items = {item.get("name", ""): item for item in self.root.iterfind("ObjectData/Object")}
         self._properties = {
@@ -61,7 +68,7 @@ class FreeCADDocument:
         }
 
     def take(self, other: FreeCADDocument) -> None:
-        """Add the objects of a part's file, which articad divided from this one: both then read like one document.
+        """Add the objects of a part's file, which articad divided from this one: both then read like one document, once `index` is called.
 
         Raises:
             ReadError: If the file is not like the one that was written.
@@ -74,7 +81,6 @@ class FreeCADDocument:
                 element.set("file", f"{other.path.stem}/{name}")
                 self._files[f"{other.path.stem}/{name}"] = (other.archive, name)
         join(self.root, other.root, other.path.stem)
-        self._index()
 
     def entry(self, name: str | None) -> bytes | None:
         """Return a file in the archive of this document, or of one that it took, or None.
@@ -269,7 +275,8 @@ class LinkedDocuments:
 
     def __init__(self, path: Path, root: Path | None) -> None:
         self._root = root
-        self.main = FreeCADDocument(path)
+        self._sizes = [0, 0, 0]
+        self.main = self._opened(path)
         self._read = {path.resolve(): self.main}
         here = path.resolve().parent
         for file in listed(self.main.root)[:MAX_FILES]:
@@ -280,8 +287,23 @@ class LinkedDocuments:
                     raise
                 continue  # whatever links to it is refused with its name
             if found not in self._read:
-                self.main.take(FreeCADDocument(found))
+                self.main.take(self._opened(found))
                 self._read[found] = self.main
+        self.main.index()
+
+    def _opened(self, path: Path) -> FreeCADDocument:
+        """Read a document; refuse it if all documents together are too large to hold.
+
+        Raises:
+            ReadError: If they are, or it cannot be read.
+        """
+        document = FreeCADDocument(path)
+        self._sizes = [before + more for before, more in zip(self._sizes, document.sizes, strict=True)]
+        bounds = (MAX_ALL_BYTES, MAX_ALL_XML, MAX_ELEMENTS)
+        for size, most, what in zip(self._sizes, bounds, ("bytes", "bytes of XML", "elements"), strict=True):
+            if size > most:
+                raise unreadable(path, "", f"With this file the documents have {size} {what}; the maximum is {most}.")
+        return document
 
     def linked(self, item: FreeCADObject, key: str) -> FreeCADObject | None:
         """Return the object that a property links to, or None if it links to none.
@@ -419,5 +441,5 @@ class LinkedDocuments:
         if path not in self._read:
             if len(self._read) >= MAX_FILES:
                 raise unreadable(item.document.path, item.name, f"The documents link to more than {MAX_FILES} files.")
-            self._read[path] = FreeCADDocument(path)
+            self._read[path] = self._opened(path)
         return self._read[path]

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from articad.errors import KernelError
+from articad.files import user_folder
 from articad.processes import scratch
 
 _SEAL = "seal.json"  # sha256 of every other file of the folder
@@ -25,7 +26,7 @@ def default_root() -> Path:
     given = os.environ.get("ARTICAD_CACHE")
     if given:
         return Path(given)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "articad" / "parts"
+    return user_folder("XDG_CACHE_HOME", ".cache") / "articad" / "parts"
 
 
 class BuildCache:

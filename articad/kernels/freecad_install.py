@@ -17,6 +17,7 @@ from functools import cache
 from pathlib import Path
 
 from articad.errors import KernelUnavailableError
+from articad.files import user_folder
 from articad.findings import Finding
 from articad.kernels import landlock, sandbox, seccomp
 from articad.processes import launcher
@@ -254,7 +255,7 @@ def installed() -> tuple[FreeCAD, ...]:
 
 def tree() -> Path:
     """Return the folder that `articad install freecad` fills."""
-    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "articad" / "freecad"
+    return user_folder("XDG_DATA_HOME", ".local/share") / "articad" / "freecad"
 
 
 def unavailable(why: str, looked_in: Sequence[str] = ()) -> KernelUnavailableError:

@@ -11,10 +11,11 @@
 set -euo pipefail
 
 readonly packages=freecad-python3,freecad-common,ca-certificates need_mb=5000
-readonly data=${XDG_DATA_HOME:-$HOME/.local/share}/articad
+[[ ${XDG_DATA_HOME:-} == /* ]] || XDG_DATA_HOME=$HOME/.local/share # a relative one is ignored, as XDG requires
+readonly data=$XDG_DATA_HOME/articad
 suite=trixie target=$data/freecad
 [[ ${1:-} != --next ]] || { suite=sid target=$data/freecad-next; shift; next=yes; }
-readonly suite target next=${next:-} partial=$target.partial fetched=$target.packages
+readonly suite target next=${next:-} partial=$target.partial fetched=$target.packages log=$data/install-freecad.log
 
 progress() { # of debootstrap: a line for every 50 packages of each stage
   awk '/^I: (Retrieving|Unpacking|Configuring) / { if (++n[$2] % 50 == 0) { print "install-freecad: " $2 ": " n[$2] " packages"; fflush() } }' >&2
@@ -30,6 +31,10 @@ if [[ ${1:-} == --remove ]]; then
   done
   exit 0
 fi
+for place in "$data" "$target" "$partial" "$fetched" "$log"; do # whoever made them would choose what root overwrites
+  [[ ! -L $place || $place == "$data" || $place == "$target" ]] || die "$place is a link; remove it."
+  [[ ! -e $place || -O $place || $(stat -c %u "$place") == $(stat -c %u "$HOME") ]] || die "$place belongs to another user; remove it."
+done
 [[ $# -eq 0 ]] || { say "unknown argument $1; known are --next and --remove"; exit 2; }
 
 version_of() { # of a freecadcmd, as "1.0"
@@ -82,9 +87,9 @@ mirror=${ARTICAD_DEBIAN_MIRROR:-$(apt-get indextargets --format '$(ORIGIN)|$(COM
 rm -rf --one-file-system "$partial" # what a broken run unpacked; its packages are kept
 debootstrap --variant=minbase --include="$packages" --cache-dir="$fetched" \
   --keyring=/usr/share/keyrings/debian-archive-keyring.gpg "$suite" "$partial" ${mirror:+"$mirror"} 2>&1 |
-  tee "$data/install-freecad.log" | progress ||
-  { tail -n 20 "$data/install-freecad.log" >&2; die "debootstrap failed; run this again to go on. Its output: $data/install-freecad.log"; }
+  tee "$log" | progress ||
+  { tail -n 20 "$log" >&2; die "debootstrap failed; run this again to go on. Its output: $log"; }
 rm -rf "$partial"/var/cache/apt/archives/*.deb "$partial"/var/lib/apt/lists/*
-mv "$partial" "$target"
-rm -rf "$fetched" "$data/install-freecad.log"
+mv -T "$partial" "$target"
+rm -rf "$fetched" "$log"
 say "done: $target ($(du -sm "$target" | cut -f 1) MB). articad install freecad --remove removes it."

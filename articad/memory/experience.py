@@ -20,6 +20,7 @@ import numpy as np
 
 from articad.arrays import IntArray
 from articad.errors import ReadError, WriteError
+from articad.files import user_folder
 from articad.findings import Finding
 from articad.memory import faiss_index
 from articad.memory.case import Case, Kind
@@ -49,7 +50,7 @@ def default_folder() -> Path:
     """Return `$ARTICAD_MEMORY`, or `articad/memory` in the user's data folder."""
     if named := os.environ.get("ARTICAD_MEMORY"):
         return Path(named)
-    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local/share") / "articad" / "memory"
+    return user_folder("XDG_DATA_HOME", ".local/share") / "articad" / "memory"
 
 
 @dataclass(frozen=True)

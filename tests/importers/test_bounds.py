@@ -13,7 +13,7 @@ from articad.errors import ReadError
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.urdf import read_urdf
-from tests.hostile_files import robot
+from tests.hostile_files import archive, listing_document, robot
 
 WORLD = "<mujoco><worldbody>{}</worldbody></mujoco>"
 GEOM = '<geom size="0.1"/>'
@@ -229,3 +229,23 @@ def test_files_that_an_engine_would_open_are_measured_before(kind: str, tmp_path
     audit = audit_file(tmp_path / "a.urdf")
     assert reason in " ".join(finding.message for finding in audit.findings)
     assert not audit.findings.ok
+
+
+@pytest.mark.parametrize(
+    ("bound", "most", "reason"),
+    [
+        ("MAX_ALL_XML", 2000, "bytes of XML; the maximum is 2000"),
+        ("MAX_ELEMENTS", 12, "14 elements; the maximum is 12"),
+        ("MAX_ALL_BYTES", 500, "bytes; the maximum is 500"),
+    ],
+)
+def test_documents_are_measured_together_with_those_that_they_list(
+    bound: str, most: int, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(f"articad.importers.freecad_document.{bound}", most)
+    for number in range(3):
+        text = b"<Document><Objects/><ObjectData/>" + b" " * 600 + b"</Document>"
+        (tmp_path / f"{number}.FCStd").write_bytes(archive(Document_xml=text))
+    (tmp_path / "a.FCStd").write_bytes(archive(Document_xml=listing_document(["0.FCStd", "1.FCStd", "2.FCStd"])))
+    with pytest.raises(ReadError, match=reason):
+        read_freecad(tmp_path / "a.FCStd")
