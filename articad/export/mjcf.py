@@ -325,20 +325,19 @@ class _Writer:
         return {name: value for name, value in kept.items() if not (stale and name == "actuatorfrcrange")}
 
     def _geoms(self, body: Any, link: Link) -> None:
-        """Write visual and collision geoms. Type and masks are stated for each, because PyBullet does not read them from classes."""
         for kind, shapes in (("visuals", link.visuals), ("collisions", link.collisions)):
-            free = {"contype": "0", "conaffinity": "0"} if kind == "visuals" else {}
             for index, placed in enumerate(shapes):
                 form, place = self._form(placed, link.name), _placement(placed.T_link_shape)
-                usual = {"type": "mesh"} if "mesh" in form else {}
                 if self.again.active:
+                    usual = {"type": "mesh"} if "mesh" in form else {}
+                    free = {"contype": "0", "conaffinity": "0"} if kind == "visuals" else {}
                     kept = self.again.attributes(f"parts.{link.part.name}.{kind}.{index}", "geom")
                     child(body, "geom", usual | form | place | (kept or free | {"rgba": rgba(placed.color)}))
                 elif kind == "visuals":
-                    child(body, "geom", {"class": "visual"} | usual | form | free | {"material": _material(placed.color)} | place)
+                    child(body, "geom", {"class": "visual"} | form | {"material": _material(placed.color)} | place)
                 else:
                     friction = {} if link.friction is None else {"friction": numbers([link.friction, FRICTION_SPIN, FRICTION_ROLL])}
-                    child(body, "geom", {"class": "collision"} | usual | form | friction | place)
+                    child(body, "geom", {"class": "collision"} | form | friction | place)
 
     def _form(self, placed: Placed, name: str) -> dict[str, str]:
         """Return the attributes of a geom that state its shape: a primitive, or a mesh."""
@@ -476,9 +475,9 @@ class _Writer:
 def _defaults(root: Any) -> None:
     default = child(root, "default")
     visual = child(default, "default", {"class": "visual"})
-    child(visual, "geom", {"group": "2"})
+    child(visual, "geom", {"type": "mesh", "contype": "0", "conaffinity": "0", "group": "2"})
     collision = child(default, "default", {"class": "collision"})
-    child(collision, "geom", {"group": "3"})
+    child(collision, "geom", {"type": "mesh", "group": "3"})
     child(default, "site", {"size": "0.002", "group": "4"})
 
 

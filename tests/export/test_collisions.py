@@ -246,30 +246,3 @@ def test_motion_is_sampled_as_far_as_loops_go() -> None:
 
     assert len(poses) > 5
     assert np.allclose(poses[0], mechanism.poses(mechanism.rest).matrix)
-
-
-def test_pybullet_reads_every_geom_of_an_mjcf(cache: BuildCache, tmp_path: Path) -> None:
-    """It reads no type of a geom from a class, and derives inertias from shapes: without shapes, its numbers diverge."""
-    pybullet = pytest.importorskip("pybullet")
-    at = {"at": Connector("at", SE3.identity())}
-    base = Part.from_mesh("base", box(10, 10, 10), density=STEEL, connectors=at)
-    rail = Part.from_mesh("rail", channel(), density=STEEL, connectors=at)
-    joint = declare.revolute("turn", base["at"], rail["at"], limits=(-1, 1))
-    bundle = write_mjcf(Assembly.from_parts("alone", parts=[base, rail], joints=[joint], ground="base"), cache=cache)
-    bundle.write(tmp_path)
-
-    client = pybullet.connect(pybullet.DIRECT)
-    try:
-        (body,) = pybullet.loadMJCF(str(tmp_path / bundle.main), physicsClientId=client)
-        links = [
-            pybullet.getJointInfo(body, index, physicsClientId=client)[12]
-            for index in range(pybullet.getNumJoints(body, physicsClientId=client))
-        ]
-        index = links.index(b"rail")
-        shapes = pybullet.getCollisionShapeData(body, index, physicsClientId=client)
-        inertia = pybullet.getDynamicsInfo(body, index, physicsClientId=client)[2]
-    finally:
-        pybullet.disconnect(client)
-    pieces = bundle.files[bundle.main].count(b'class="collision"') - 1 - 1  # but the base's box and the class itself
-    assert len(shapes) == pieces + 1  # PyBullet counts the visual mesh, which its masks keep out of contacts
-    assert min(inertia) > 0
