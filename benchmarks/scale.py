@@ -83,7 +83,7 @@ def seconds(work: Callable[[], object]) -> tuple[float, float]:
 
 def _watch(seen: dict[int, float], ended: threading.Event) -> None:
     """Keep the latest processor time of each process below this one until the work has ended."""
-    while not ended.wait(0.05):
+    while not ended.wait(0.3):
         for child in descendants(os.getpid()):
             with contextlib.suppress(OSError):
                 fields = Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()
