@@ -152,7 +152,7 @@ class Build123dKernel:
         part, source = str(brief["name"]), script.decode("utf-8", errors="replace")
         limits = replace(self.limits, probe_seconds=0.0)
         request = {"script": source, "part": dict(brief), "deflection_mm": deflection, "angle_deg": ANGLE_DEG}
-        with self._job() as job:
+        with self.job_folder() as job:
             try:
                 started = time.monotonic()
                 ran = self._run("script", job, request, {"shape": "shape.bin"}, limits)
@@ -172,7 +172,7 @@ class Build123dKernel:
         matrix = np.asarray(matrix, dtype=np.float64)
         assert built.solid.brep is not None
         name, deflection = str(built.brief.get("name", "part")), built.solid.deflection
-        with self._job() as job:
+        with self.job_folder() as job:
             shutil.copyfile(built.solid.brep, job / "shape.bin")
             shape = self._measured(job, form="brep", name=name, deflection=deflection, matrix=matrix.tolist())
             numbers_of_it = self._checked(job, shape, deflection)
@@ -215,7 +215,7 @@ class Build123dKernel:
 
     def _read_step(self, path: Path, content: bytes, deflection: float, folder: Path) -> None:
         brief = {"name": path.stem}
-        with self._job() as job:
+        with self.job_folder() as job:
             (job / "shape.bin").write_bytes(content)
             shape = self._measured(job, form="step", name="part", deflection=deflection)
             findings = Findings(solid_findings(brief, shape))
@@ -224,6 +224,17 @@ class Build123dKernel:
             self._leave(job, folder, self._checked(job, shape, deflection), {}, findings, brief, deflection, self.level)
 
     # ------------------------------------------------------------------ one job
+
+    def run_task(self, task: str, request: Json, limits: isolation.ScriptLimits) -> list[Json]:
+        """Run a task that reads and writes no shapes; return its report, which nobody has checked.
+
+        Raises:
+            SandboxError: If scripts cannot be confined here.
+            PoisonedError: If the report is not JSON.
+        """
+        self._require_sandbox()
+        with self.job_folder() as job:
+            return self._run(task, job, request, {}, limits).report
 
     def _require_sandbox(self) -> None:
         if self.level != isolation.WEAK or (self.mode == "weak" and sys.platform == "linux"):
@@ -234,7 +245,8 @@ class Build123dKernel:
         raise SandboxError(f"{message} {hint}", findings=[Finding(code="E_SANDBOX", where="sandbox", message=message, hint=hint)])
 
     @contextlib.contextmanager
-    def _job(self) -> Iterator[Path]:
+    def job_folder(self) -> Iterator[Path]:
+        """Yield an empty folder, and delete it."""
         folder = self._new_folder()
         try:
             yield folder
@@ -359,7 +371,7 @@ class Build123dKernel:
 
         def attempt(dimensions: Json, seconds: float) -> list[float] | Json | None:
             limits = replace(self.limits, seconds=seconds, probe_seconds=0.0)
-            with self._job() as job:
+            with self.job_folder() as job:
                 ran = self._run(
                     "script", job, {"script": script, "part": {**brief, "dimensions": dimensions}}, {"shape": "shape.bin"}, limits
                 )

@@ -120,7 +120,7 @@ class FreeCADKernel(Build123dKernel):
         """Run a script and check its part against the contract; see `PartKernel.build`."""
         self._require_sandbox()
         part, source = str(brief["name"]), script.decode("utf-8", errors="replace")
-        with self._job() as job:
+        with self.job_folder() as job:
             try:
                 ran = self._inside("part", job, {"script": source, "part": dict(brief)}, (), (DOCUMENT,), self.limits.seconds)
                 said = ran.report[0] if ran.report else {}
@@ -258,7 +258,7 @@ class BrepReader(Build123dKernel):
         self._require_sandbox()
         kept, folder = folder is not None, folder or self._new_folder()
         try:
-            with self._job() as job:
+            with self.job_folder() as job:
                 (job / "shape.bin").write_bytes(shortened(content))
                 matrix = None if T.allclose(SE3.identity(), mm=0.0, rad=0.0) else T.matrix.tolist()
                 shape = self._measured(job, form="brep", name=name, deflection=deflection, matrix=matrix, place=place)

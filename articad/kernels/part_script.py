@@ -48,7 +48,7 @@ def run(script: str, part: Json, *, seconds: float, report: Write, shape: Callab
     namespace: Json = {"__name__": "part", "__builtins__": __builtins__}
     try:
         exec(compile(script, FILE, "exec"), namespace)  # noqa: S102 - this is what the sandbox is for
-        solid, connectors = _built(namespace, part)
+        solid, connectors = built(namespace, part)
     except NotAPart as wrong:
         if wrong.shape is not None:
             shape(measure.binary(wrong.shape))
@@ -88,23 +88,23 @@ def _innermost(error: BaseException) -> FrameType:
     return [frame for frame, _ in traceback.walk_tb(error.__traceback__)][-1]
 
 
-def _built(namespace: Json, part: Json) -> tuple[Any, dict[str, Json]]:
+def built(namespace: Json, part: Json) -> tuple[Any, dict[str, Json]]:
     """Call `build(part)` and return the kernel's shape and plain connectors."""
     build = namespace.get("build")
     if not callable(build):
         raise NotAPart("The script defines no function build(part)")
-    result = build(_as_object(part))
+    result = build(as_object(part))
     if not (isinstance(result, (tuple, list)) and len(result) == 2):
         raise NotAPart(f"The function build(part) returned {_kind(result)}, not (shape, connectors)")
     problems: list[str] = []
     shape = _kernel_shape(result[0], problems)
-    connectors = _plain_connectors(result[1], problems)
+    connectors = plain_connectors(result[1], problems)
     if problems:
         raise NotAPart(*problems, shape=shape)
     return shape, connectors
 
 
-def _as_object(part: Json) -> SimpleNamespace:
+def as_object(part: Json) -> SimpleNamespace:
     """Return the brief as the object that scripts get, newly made for each call."""
     fields = copy.deepcopy({key: part[key] for key in ("name", "description", "material", "dimensions")})
     connectors = {
@@ -126,7 +126,7 @@ def _kernel_shape(value: Any, problems: list[str]) -> Any:
     return wrapped[0] if len(wrapped) == 1 else measure.compound(wrapped)
 
 
-def _plain_connectors(value: Any, problems: list[str]) -> dict[str, Json]:
+def plain_connectors(value: Any, problems: list[str]) -> dict[str, Json]:
     if not isinstance(value, Mapping):
         problems.append(f"The connectors are {_kind(value)}, not a dict of name to {{'o', 'z', 'x'}}")
         return {}

@@ -64,7 +64,7 @@ class StepReader(Build123dKernel):
         except OSError as error:
             raise ReadError(f"{path.name} cannot be read: {error.strerror}.", path=str(path)) from error
         try:
-            with self._job() as job:
+            with self.job_folder() as job:
                 (job / "shape.bin").write_bytes(content)
                 request = {"deflection_mm": deflection, "angle_deg": ANGLE_DEG}
                 limits = replace(self.limits, probe_seconds=0.0)

@@ -8,7 +8,7 @@ import os
 import signal
 from typing import Any
 
-from articad.kernels import measure, part_script, step_tree
+from articad.kernels import measure, part_script, step_tree, tracing
 
 SELF_INTERSECTION_SECONDS = 5.0  # the check is quadratic in faces; a swept thread would need 12 s
 
@@ -24,6 +24,18 @@ def run_script(request: Json, files: dict[str, int]) -> None:
         seconds=limits["seconds"],
         report=lambda line: _write(files["report"], measure.to_json(line)),
         shape=lambda content: _write(files["shape"], content),
+    )
+
+
+def trace_script(request: Json, files: dict[str, int]) -> None:
+    """Task `trace`: the operations of a part script with their formulas, and its solid at other dimensions."""
+    job, limits = json.loads(_content(files["job"])), request["limits"]
+    tracing.run(
+        job["script"],
+        job["part"],
+        job["variations"],
+        seconds=limits["seconds"],
+        report=lambda line: _write(files["report"], measure.to_json(line)),
     )
 
 
@@ -75,7 +87,14 @@ def read_assembly(request: Json, files: dict[str, int]) -> None:
     _write(files["report"], b"".join(measure.to_json(row) for row in ({"ok": True, "parts": len(rows)}, *rows)))
 
 
-TASKS = {"script": run_script, "measure": measure_shape, "pieces": measure_shape, "judge": judge_shape, "assembly": read_assembly}
+TASKS = {
+    "script": run_script,
+    "trace": trace_script,
+    "measure": measure_shape,
+    "pieces": measure_shape,
+    "judge": judge_shape,
+    "assembly": read_assembly,
+}
 
 
 def _content(file: int) -> bytes:

@@ -311,7 +311,7 @@ def step_reader() -> StepReader:
 
 
 def _solid(form: str, content: bytes) -> None:
-    with kernel()._job() as job, contextlib.suppress(results.PoisonedError):
+    with kernel().job_folder() as job, contextlib.suppress(results.PoisonedError):
         (job / "shape.bin").write_bytes(content)
         said = kernel()._measured(job, form=form, name="part", deflection=0.5)
         if Findings(solid_findings({"name": "part"}, said)).ok:

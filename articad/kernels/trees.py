@@ -1,0 +1,270 @@
+"""Feature trees of parts whose scripts are written in build123d.
+
+The script runs once more in the worker's sandbox, with its dimensions as traced numbers, and reports its operations with their formulas.
+FreeCAD makes them as features of its Part workbench whose properties follow the dimensions. Then measurement decides: each dimension is
+changed alone, and all are changed together, in FreeCAD and in the script. A dimension whose changes do not give the same solid in both is
+fixed in the tree. A tree that is not the part's solid to begin with is none. Trees are cached by script, dimensions and versions.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from articad.aliases import Json
+from articad.connectors.se3 import SE3
+from articad.findings import Finding
+from articad.kernels.build123d import Build123dKernel
+from articad.kernels.cache import BuildCache
+from articad.kernels.contract import primary_connector, read_connectors, seating
+from articad.kernels.failures import scrubbed
+from articad.kernels.freecad_file import settled
+from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
+from articad.kernels.kernel import SEATED_MM, SEATED_RAD, BuiltPart
+from articad.kernels.results import PoisonedError, numbers
+from articad.kernels.tree_objects import tree_objects
+from articad.plan.resolve import ResolvedPart
+
+__all__ = ["PartTree", "part_tree"]
+
+RECIPE: Final = 1  # increased when trees are made or judged differently, so that cached ones are made again
+SAME: Final = 1e-6  # relative difference of volumes, areas and inertias; of centres in terms of the part's size
+MAX_TREE_BYTES: Final = 64 * 2**20
+_PROGRAM: Final = Path(__file__).parent / "inside_freecad" / "tree.py"
+_SECONDS: Final = 240.0
+_STEPS: Final = ((0.07, 0.02, 0.004), (-0.05, -0.02, -0.004))  # relative changes, the first that the script builds
+_ZERO_STEPS: Final = ((0.7, 0.1), (-0.5, -0.1))  # changes of a dimension that is zero [mm, deg]
+
+
+@dataclass(frozen=True)
+class PartTree:
+    """The feature tree of a part, or why it has none.
+
+    Attributes:
+        document: The FreeCAD document with one PartDesign::Body and its VarSet; None if the part has no tree.
+        reason: Why it has none.
+        fixed: Why a dimension cannot be edited in the tree, by dimension.
+        seat: Pose of the document's body in the part's frame.
+    """
+
+    document: Path | None
+    reason: str = ""
+    fixed: Mapping[str, str] = field(default_factory=dict)
+    seat: SE3 = field(default_factory=SE3.identity)
+
+
+def part_tree(target: ResolvedPart, built: BuiltPart, script: bytes, *, kernel: Build123dKernel, freecad: FreeCAD, cache: BuildCache) -> PartTree:
+    """Return the feature tree of a part that a build123d script built; from the cache if it is there.
+
+    Args:
+        target: The part in the plan.
+        built: The part as the script built it, seated in the plan.
+        script: The script.
+        kernel: Runs the script.
+        freecad: Makes the tree.
+        cache: Stores it.
+
+    Raises:
+        KernelError: If no script can be run here.
+    """
+    held = json.dumps([dict(built.brief), kernel.version, freecad.version_text, RECIPE], sort_keys=True)
+    digest = f"tree-{hashlib.sha256(held.encode() + script).hexdigest()}"
+    folder = cache.get(digest)
+    if folder is None:
+        with cache.writing(digest) as empty:
+            told = _Maker(kernel, freecad, script, built.brief, empty).told()
+            (empty / "tree.json").write_text(json.dumps(told))
+        folder = cache.root / digest
+    told = json.loads((folder / "tree.json").read_text())
+    if told["reason"]:
+        return PartTree(None, told["reason"])
+    ignored: list[Finding] = []
+    connectors = read_connectors(built.brief, told["connectors"], ignored)
+    seat = seating(target, connectors, primary_connector(target, dict(built.brief)))
+    seat = SE3.identity() if seat.allclose(SE3.identity(), mm=SEATED_MM, rad=SEATED_RAD) else seat
+    solid, center = built.solid, seat.apply(np.array(told["nominal"]["com_mm"]))
+    size = float(np.linalg.norm(solid.bbox[1] - solid.bbox[0]))
+    if abs(told["nominal"]["volume_mm3"] / solid.volume - 1) > SAME or float(np.abs(center - solid.com).max()) > SAME * size:
+        return PartTree(None, "its features give another solid than the part's")
+    return PartTree(folder / "part.FCStd", fixed=told["fixed"], seat=seat)
+
+
+class _Maker:
+    """Makes and judges one tree in an empty folder."""
+
+    def __init__(self, kernel: Build123dKernel, freecad: FreeCAD, script: bytes, brief: Mapping[str, Any], folder: Path) -> None:
+        self._kernel, self._freecad, self._folder = kernel, freecad, folder
+        self._source, self._brief = script.decode("utf-8", errors="replace"), dict(brief)
+        self._dimensions: dict[str, float] = self._brief["dimensions"]
+
+    def told(self) -> Json:
+        """Return what is to be known about the tree: the reason why there is none, or its fixed dimensions and its measures."""
+        try:
+            return self._judged()
+        except NoTreeError as none:
+            return {"reason": str(none), "fixed": {}}
+        except PoisonedError as poison:
+            return {"reason": f"its script cannot be traced: {poison}", "fixed": {}}
+
+    def _judged(self) -> Json:
+        alone = {name: list(_moves(name, value)) for name, value in self._dimensions.items()}
+        tried = [[{**self._dimensions, name: value} for value in values] for name in alone for values in alone[name]]
+        owners = [name for name in alone for _ in alone[name]]
+        free = [name for name in alone if not isinstance(self._dimensions[name], int)]
+        tried += self._together(free)
+        trace, script = self._traced(tried)
+        made, nominal, varied = self._in_freecad(trace, script)
+        if wrong := _difference(nominal, script[0], nominal, script[0]):
+            raise NoTreeError(f"its features give another solid: {wrong}")
+        fixed: dict[str, str] = {}
+        for owner, mine, theirs in zip(owners, varied, script[1:], strict=False):
+            if owner in fixed:
+                continue
+            if not theirs.get("ok"):
+                fixed[owner] = "the script builds no part with another value near it"
+            elif wrong := _difference(mine, theirs, nominal, script[0]):
+                fixed[owner] = self._why(owner, wrong)
+        if set(fixed) == set(self._dimensions) and fixed:
+            raise NoTreeError(f"its features follow no dimension: {next(iter(fixed.values()))}")
+        live = [name for name in free if name not in fixed]
+        together = list(zip(varied[len(owners) :], script[1 + len(owners) :], strict=True))
+        if live != free:
+            trace, script = self._traced(self._together(live))
+            made, nominal, varied = self._in_freecad(trace, script)
+            together = list(zip(varied, script[1:], strict=True))
+        for mine, theirs in together:
+            if theirs.get("ok") and (wrong := _difference(mine, theirs, nominal, script[0])):
+                raise NoTreeError(f"its features do not follow several dimensions at once: {wrong}")
+        (self._folder / "part.FCStd").write_bytes(settled(made))
+        return {"reason": "", "fixed": fixed, "connectors": trace["connectors"], "nominal": nominal}
+
+    def _why(self, dimension: str, wrong: str) -> str:
+        if isinstance(self._dimensions[dimension], int):
+            return "the tree has as many features as the script made for this count"
+        return f"FreeCAD and the script differ when it changes ({wrong})"
+
+    def _together(self, names: list[str]) -> list[list[Json]]:
+        """Return the dimensions with all of some changed at once: all up, all down, and every second one."""
+        if len(names) < 2:
+            return []
+        signs = ([1.0] * len(names), [-1.0] * len(names), [(-1.0) ** place for place in range(len(names))])
+        return [
+            [
+                {**self._dimensions, **{name: _moved(self._dimensions[name], step * sign) for name, sign in zip(names, row, strict=True)}}
+                for step in (0.05, 0.01, 0.002)
+            ]
+            for row in signs
+        ]
+
+    def _traced(self, tried: list[list[Json]]) -> tuple[Json, list[Json]]:
+        """Return the trace, and the solid's measures: first unchanged, then at the first buildable of each list of dimensions."""
+        limits = replace(self._kernel.limits, seconds=self._kernel.limits.seconds + self._kernel.limits.probe_seconds, probe_seconds=0.0)
+        job = {"script": self._source, "part": self._brief, "variations": [[self._dimensions], *tried]}
+        lines = self._kernel.run_task("trace", job, limits)
+        if not lines:
+            raise NoTreeError("its script ends the process when it is traced")
+        if lines[0].get("ok") is not True:
+            raise NoTreeError(scrubbed(lines[0].get("reason", "its script cannot be traced"), 300))
+        if len(lines) != len(tried) + 2:
+            raise NoTreeError("its script takes too long to be run at other dimensions")
+        measured = [_measures(line) for line in lines[1:]]
+        for line, options in zip(measured, job["variations"], strict=True):
+            if line["ok"]:
+                line["dimensions"] = options[line["choice"]]
+        if not measured[0]["ok"]:
+            raise NoTreeError("its script builds no valid solid")
+        return lines[0], measured
+
+    def _in_freecad(self, trace: Json, script: list[Json]) -> tuple[bytes, Json, list[Json]]:
+        """Return the document that FreeCAD makes, the measures of its solid, and those at each variation; an empty one is not built."""
+        job = tree_objects(trace.get("rows"), trace.get("formulas"), self._dimensions, self._source.splitlines())
+        changes = [_changed(self._dimensions, row["dimensions"]) if row["ok"] else {} for row in script[1:]]
+        job |= {"dimensions": self._dimensions, "variations": [change for change in changes if change]}
+        with self._kernel.job_folder() as folder:
+            (folder / "job.json").write_text(json.dumps(job))
+            ended = self._freecad.run(_PROGRAM, folder=folder, limits=FreeCADLimits(seconds=_SECONDS))
+            if not ended.ok or not (folder / "report.json").is_file():
+                raise NoTreeError("FreeCAD takes too long over its features" if ended.late else "FreeCAD fails on its features")
+            report = json.loads((folder / "report.json").read_text())
+            if "problem" in report:
+                raise NoTreeError(scrubbed(report["problem"], 300))
+            content = (folder / "part.FCStd").read_bytes()
+        if len(content) > MAX_TREE_BYTES:
+            raise NoTreeError("its document is too large")
+        nominal, again = report["nominal"], report["again"]
+        if not nominal.get("ok") or not again.get("ok") or _difference(again, nominal, nominal, nominal):
+            raise NoTreeError("FreeCAD's features do not come back to the solid they started from")
+        rows = iter(report["varied"])
+        return content, nominal, [next(rows) if change else {"ok": False} for change in changes]
+
+
+class NoTreeError(Exception):
+    """A part has no tree; the message says why."""
+
+
+def _moved(value: float, step: float) -> float:
+    if isinstance(value, int):
+        return value + (1 if step > 0 else -1)
+    return value * (1 + step) if value else step * 10
+
+
+def _moves(name: str, value: float) -> Iterator[list[float]]:
+    """Yield the values to which one dimension is changed, upwards and downwards, each with smaller changes instead."""
+    if isinstance(value, int) and name.endswith("_count"):
+        yield [value + 1, value + 2]
+        if value > 1:
+            yield [value - 1]
+        return
+    for steps, zero in zip(_STEPS, _ZERO_STEPS, strict=True):
+        yield [float(value) * (1 + step) for step in steps] if value else list(zero)
+
+
+def _changed(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
+    return {name: value for name, value in after.items() if value != before[name]}
+
+
+def _measures(line: Json) -> Json:
+    """Return the validated measures of a solid at one variation."""
+    if line.get("ok") is not True:
+        return {"ok": False}
+    faces, choice = line.get("faces"), line.get("choice")
+    if type(faces) is not int or type(choice) is not int or not 0 <= choice < 4:
+        raise PoisonedError("a measure has the wrong form")
+    return {
+        "ok": True,
+        "choice": choice,
+        "faces": faces,
+        "volume_mm3": float(numbers(line.get("volume_mm3"))),
+        "area_mm2": float(numbers(line.get("area_mm2"))),
+        "com_mm": numbers(line.get("com_mm"), 3).tolist(),
+        "inertia_mm5": numbers(line.get("inertia_mm5"), 3, 3).tolist(),
+    }
+
+
+def _difference(mine: Json, theirs: Json, mine_before: Json, theirs_before: Json) -> str:
+    """Return how FreeCAD's solid differs from the script's; empty if it does not.
+
+    Both kernels split faces by their own rules, so the numbers of faces may differ, but they must change alike.
+    """
+    if not mine.get("ok"):
+        return f"FreeCAD cannot compute {', '.join(mine.get('invalid', [])) or 'one valid solid'}"
+    volume, area = theirs["volume_mm3"], theirs["area_mm2"]
+    if abs(mine["volume_mm3"] - volume) > SAME * abs(volume):
+        return f"volume {mine['volume_mm3']:.6g} instead of {volume:.6g} mm³"
+    if abs(mine["area_mm2"] - area) > SAME * area:
+        return f"area {mine['area_mm2']:.6g} instead of {area:.6g} mm²"
+    reach = math.sqrt(area)
+    if (off := float(np.abs(np.subtract(mine["com_mm"], theirs["com_mm"])).max())) > SAME * reach:
+        return f"centre {off:.3g} mm off"
+    if float(np.abs(np.subtract(mine["inertia_mm5"], theirs["inertia_mm5"])).max()) > 10 * SAME * abs(volume) * reach**2:
+        return "another inertia"
+    if mine["faces"] - mine_before["faces"] != theirs["faces"] - theirs_before["faces"]:
+        return f"{mine['faces']} faces instead of {theirs['faces']}"
+    return ""
