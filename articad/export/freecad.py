@@ -1,19 +1,22 @@
 """Writes a native, editable FreeCAD assembly document.
 
 Every part is an App::Part with its shape and a coordinate system per connector; joints refer to these, so that no face or edge is named.
-If the FreeCAD kernel built a part, its body is copied with all features, and its dimensions follow the plan's parameters by expressions;
-other parts are copied as B-rep. Derived parts follow their source. Each placement is computed by articad: FreeCAD's solver only checks
+If the FreeCAD kernel built a part, its body is copied with all features, and its dimensions follow the plan's parameters by expressions.
+The features of a part that build123d built are traced from its script (`articad.kernels.trees`); where that is not exact, the part is
+copied as B-rep. Derived parts follow their source. Each placement is computed by articad: FreeCAD's solver only checks
 whether it agrees (it does not enforce limits or couplings).
 """
 
 from __future__ import annotations
 
 import json
+import os
 import re
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from articad.errors import ExportError, KernelUnavailableError
+from articad.errors import ExportError, KernelError, KernelUnavailableError
 from articad.export.bundle import Bundle
 from articad.export.freecad_file import Appearance, normalised
 from articad.export.freecad_job import Job
@@ -26,7 +29,11 @@ from articad.export.product import of_the_product
 from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.kernels import freecad_install
+from articad.kernels.build123d import Build123dKernel
+from articad.kernels.cache import BuildCache
+from articad.kernels.freecad import DOCUMENT
 from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
+from articad.kernels.trees import PartTree, part_tree
 from articad.processes import scratch
 
 if TYPE_CHECKING:
@@ -38,7 +45,9 @@ _PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that F
 
 
 @of_the_product
-def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD | None = None, split: bool = False) -> Bundle:
+def write_freecad(
+    assembly: Assembly, *, strict: bool = False, freecad: FreeCAD | None = None, split: bool = False, trees: bool = True
+) -> Bundle:
     """Write an assembly as a FreeCAD 1.0 document; FreeCAD 1.1 opens it as well.
 
     Args:
@@ -47,6 +56,8 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
         split: Write one file for each part, and one for the parameters, in a folder beside the document, which links to them.
         freecad: The FreeCAD that writes it; by default the installed one. Without FreeCAD, the document is written as by
             `write_freecad_alone`.
+        trees: Give parts whose scripts are written in build123d their feature trees, which are traced, tried at other dimensions, and
+            cached; without them such parts are frozen.
 
     Returns:
         One file, `<name>.FCStd`, the same bytes each time on the same FreeCAD, and with `split` the files in `<name>_parts`. It was
@@ -62,7 +73,7 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
         return write_freecad_alone(assembly, strict=strict, split=split)
     with scratch.folder("freecad") as name:
         folder = Path(name)
-        job = Job(assembly, folder)
+        job = Job(assembly, folder, trees=_trees(assembly, freecad) if trees else None)
         (folder / "job.json").write_text(json.dumps(job.to_json()))
         if strict:
             refuse(job.losses)
@@ -75,6 +86,30 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
     look = Appearance(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"], tuple(report["tips"]))
     files = _files(job.name, content, look, split=split)
     return Bundle(files, job.losses, verify(files, assembly, freecad))
+
+
+def _trees(assembly: Assembly, freecad: FreeCAD) -> dict[str, PartTree]:
+    """Return the feature trees of all parts that build123d scripts built."""
+    resolved, kernel = assembly.resolved, Build123dKernel()
+    if resolved is None:
+        return {}
+
+    def made(name: str) -> PartTree:
+        realised = assembly.realised[name]
+        assert realised.script is not None
+        cache = BuildCache(realised.built.folder.parent)
+        try:
+            return part_tree(resolved.parts[name], realised.built, realised.script, kernel=kernel, freecad=freecad, cache=cache)
+        except KernelError as error:
+            return PartTree(None, str(error))
+
+    names = [
+        name
+        for name, realised in assembly.realised.items()
+        if name in resolved.parts and realised.script is not None and not (realised.built.folder / DOCUMENT).is_file()
+    ]
+    with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
+        return dict(zip(names, pool.map(made, names), strict=True))
 
 
 @of_the_product

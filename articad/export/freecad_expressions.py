@@ -44,11 +44,6 @@ class Followed:
             return None
         return f"({text}) * 1 {unit}" if unit else text
 
-    def driving(self, parts: Collection[str]) -> dict[str, set[str]]:
-        """Return the parts that each parameter shapes, directly or through other parameters, of those given."""
-        held = {} if self._resolved is None else self._resolved.parts
-        return self.needed({part: list(held[part].spec.dimensions.values()) for part in parts if part in held})
-
     def placing(self, parts: Collection[str]) -> dict[str, set[str]]:
         """Return the parts that each parameter places at rest, directly or through other parameters, of those given."""
         if self._resolved is None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +31,7 @@ from articad.export.metadata import dumps, records
 from articad.export.names import Names
 from articad.geometry.part import Part
 from articad.kernels.freecad_file import bounded
+from articad.kernels.trees import PartTree
 from articad.kinematics.joints import Coupling, Joint, JointType
 from articad.plan.resolve import ResolvedPart, ResolvedPlan, resolve
 
@@ -67,14 +68,15 @@ class Job:
         assembly: The assembly, written at rest.
         folder: Folder for the files.
         features: Whether to keep the bodies of the FreeCAD kernel with all their features, which only FreeCAD can copy.
+        trees: Feature trees of parts that another kernel built, by name.
 
     Attributes:
         name: Name of the document.
         names: Names of its objects that are taken so far.
     """
 
-    def __init__(self, assembly: Assembly, folder: Path, *, features: bool = True) -> None:
-        self.assembly, self.folder, self.features = assembly, folder, features
+    def __init__(self, assembly: Assembly, folder: Path, *, features: bool = True, trees: Mapping[str, PartTree] | None = None) -> None:
+        self.assembly, self.folder, self.features, self.trees = assembly, folder, features, trees or {}
         self._told = [feature for joint in assembly.joints for feature in joint_features(joint)]
         self._told += [Feature("fit", f"joints.{joint}") for joint in assembly.fits]
         self.model = lower(assembly)
@@ -105,7 +107,7 @@ class Job:
             while source["kind"] in ("mirror", "link"):
                 source = by_name[source["source"]]
             part["frozen"] = source["kind"] in _FROZEN
-        parameters = list(self._parameters({part["name"] for part in parts if part["kind"] in _FROZEN and part["dimensions"]}))
+        parameters = list(self._parameters(parts))
         live = sum(row["live"] for row in parameters)
         split = "all fixed" if not live else f"{live} live, {len(parameters) - live} fixed"
         return {
@@ -126,17 +128,17 @@ class Job:
 
     # ------------------------------------------------------------------ parameters
 
-    def _parameters(self, frozen: set[str]) -> Iterator[Json]:
+    def _parameters(self, parts: Sequence[Json]) -> Iterator[Json]:
         """Yield the parameters. A parameter is fixed if something that it drives cannot follow it in FreeCAD.
 
         Args:
-            frozen: Parts whose shape has no feature tree.
+            parts: The parts as JSON.
         """
         resolved = self.assembly.resolved
         if resolved is None:
             return
         frozen_things = (
-            ("it shapes {}, which cannot follow", self.followed.driving(frozen)),
+            ("it shapes {}, which cannot follow", self.followed.needed(self._shaping(parts))),
             ("it places {} at rest, which cannot follow", self.followed.placing(self._unplaced)),
             ("it turns the connector {}, which cannot follow", self._turning(resolved)),
         )
@@ -160,6 +162,21 @@ class Job:
                 "description": parameter.description,
                 "expression": self.followed.number(given[parameter.name]),
             }
+
+    def _shaping(self, parts: Sequence[Json]) -> dict[str, list[Number]]:
+        """Return the numbers of the plan that shape what cannot follow: all of a frozen part, and the fixed dimensions of another."""
+        found: dict[str, list[Number]] = {}
+        for part in parts:
+            held = (
+                {}
+                if self.assembly.resolved is None or not part["dimensions"]
+                else self.assembly.resolved.parts[part["name"]].spec.dimensions
+            )
+            if part["kind"] in _FROZEN:
+                found[part["name"]] = list(held.values())
+            elif part["kind"] == "body":
+                found |= {f"{row['name']} of {part['name']}": [held[row["name"]]] for row in part["dimensions"] if not row["live"]}
+        return found
 
     def _turning(self, resolved: ResolvedPlan) -> dict[str, set[str]]:
         """Return the connectors that each parameter turns although no expression turns them in FreeCAD.
@@ -230,8 +247,12 @@ class Job:
             seated = realised.built.folder / "seat.json"
             seat = json.loads(seated.read_text()) if seated.is_file() else _seven(SE3.identity())
             return {"kind": "body", "file": self._file(document, f"{name}.FCStd"), "body": "Body", "seat": seat}
-        self._tell("freecad.features" if document.is_file() else "freecad.brep", f"parts.{name}")
-        return {"kind": "shape", "file": self._file(realised.built.folder / "part.brep", f"{name}.brep")}
+        tree = self.trees.get(name)
+        if tree is not None and tree.document is not None:
+            return {"kind": "body", "file": self._file(tree.document, f"{name}.FCStd"), "body": "Body", "seat": _seven(tree.seat)}
+        why = "" if tree is None else tree.reason
+        self._tell("freecad.features" if document.is_file() else "freecad.brep", f"parts.{name}", why)
+        return {"kind": "shape", "file": self._file(realised.built.folder / "part.brep", f"{name}.brep"), "why": why}
 
     def _loose(self, name: str, part: Part) -> Json:
         """Return the geometry of a part that no script built."""
@@ -254,8 +275,18 @@ class Job:
         return name
 
     def _dimensions(self, target: ResolvedPart) -> Iterator[Json]:
+        tree = self.trees.get(target.name)
+        fixed = {} if tree is None else tree.fixed
         for name, value in target.dimensions.items():
-            yield {"name": name, "value": float(value), "expression": self.followed.number(target.spec.dimensions[name])}
+            if name in fixed:
+                self._tell("freecad.dimension", f"parts.{target.name}.dimensions.{name}", fixed[name])
+            yield {
+                "name": name,
+                "value": float(value),
+                "expression": self.followed.number(target.spec.dimensions[name]),
+                "live": name not in fixed,
+                "why": f"Fixed: {fixed[name]}. Change it in the plan and export again." if name in fixed else "",
+            }
 
     def _connector(self, part: str, connector: str, target: ResolvedPart | None) -> Json:
         held = self.assembly.parts[part].connectors[connector]

@@ -420,6 +420,7 @@ _FREECAD: dict[str, LossRow] = {
     "freecad.coupling": LossRow("a record", "FreeCAD has no such coupling", refused=True),
     "freecad.features": LossRow("its B-rep", "its features: it follows no parameter; write with FreeCAD to keep them"),
     "freecad.brep": LossRow("its B-rep", "editable features: it follows no parameter; build with the FreeCAD kernel to get them"),
+    "freecad.dimension": LossRow("a fixed number", "the dimension's link to its features"),
     "freecad.placement": LossRow("a fixed placement", "the link of its placement to parameters: FreeCAD's solver places it after an edit"),
     "freecad.mesh": LossRow("a mesh", "coordinates beyond single precision, and an editable solid"),
     "freecad.frame": LossRow("a fixed frame", "the link to parameters"),

@@ -127,6 +127,7 @@ def _kernel_shape(value: Any, problems: list[str]) -> Any:
 
 
 def plain_connectors(value: Any, problems: list[str]) -> dict[str, Json]:
+    """Return the connectors that a script returned as plain numbers; append what is wrong with them to `problems`."""
     if not isinstance(value, Mapping):
         problems.append(f"The connectors are {_kind(value)}, not a dict of name to {{'o', 'z', 'x'}}")
         return {}

@@ -11,7 +11,7 @@ import builtins
 import math
 from collections.abc import Callable, Iterator, Sequence
 from types import ModuleType
-from typing import Any, Final
+from typing import Any, Final, Self
 
 __all__ = ["Formula", "TracedFloat", "TracedInt", "formula_of", "plain", "traced", "traced_builtins", "traced_math", "without_dust"]
 
@@ -63,25 +63,32 @@ def _made(value: Any, name: str, *operands: Any) -> Any:
     """Return a value with its formula, simplified where an operand is 0 or 1; plain if every operand is."""
     if not any(isinstance(operand, (TracedFloat, TracedInt)) for operand in operands) or isinstance(value, complex):
         return value
-    first, second = operands[0], operands[-1]
-    constant = [None if isinstance(operand, (TracedFloat, TracedInt)) else float(operand) for operand in (first, second)]
-    if name == "mul" and 0.0 in constant:
-        return 0.0
-    same = {"add": (0.0, 0.0), "sub": (None, 0.0), "mul": (1.0, 1.0), "div": (None, 1.0), "pow": (None, 1.0)}.get(name, (None, None))
-    if same[0] is not None and constant[0] == same[0]:
-        return second
-    if len(operands) == 2 and same[1] is not None and constant[1] == same[1]:
-        return first
-    if name == "mul" and constant[0] == -1.0:
-        return -second
+    simple = _simplified(name, *operands) if len(operands) == 2 else None
+    if simple is not None:
+        return simple
     formula = Formula(name, *map(formula_of, operands))
     return TracedInt(value, formula) if isinstance(value, int) else TracedFloat(value, formula)
+
+
+def _simplified(name: str, first: Any, second: Any) -> Any:
+    """Return the result of an operation with 0, 1 or -1 that leaves the other operand, its opposite, or 0; else None."""
+    a, b = (None if isinstance(operand, (TracedFloat, TracedInt)) else float(operand) for operand in (first, second))
+    if name == "mul" and 0.0 in (a, b):
+        return 0.0
+    if (name, b) in (("add", 0.0), ("sub", 0.0), ("mul", 1.0), ("div", 1.0), ("pow", 1.0)):
+        return first
+    if (name, a) in (("add", 0.0), ("mul", 1.0)):
+        return second
+    return -second if (name, a) in (("sub", 0.0), ("mul", -1.0)) else None
 
 
 class _Arithmetic:
     """Operators that compute as the plain numbers do, and record the operation."""
 
     formula: Formula
+
+    def __pos__(self) -> Any:
+        return self
 
 
 def _binary(name: str, operation: Callable[[Any, Any], Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
@@ -112,13 +119,12 @@ for _word, _name, _operation in (
     setattr(_Arithmetic, f"__r{_word}__", _backward)
 for _word, _operation_of_one in (("neg", lambda a: -a), ("abs", builtins.abs), ("floor", math.floor), ("ceil", math.ceil)):
     setattr(_Arithmetic, f"__{_word}__", _unary(_word, _operation_of_one))
-_Arithmetic.__pos__ = lambda self: self  # type: ignore[attr-defined]
 
 
-class TracedFloat(_Arithmetic, float):  # type: ignore[misc]  # the operators above come first
+class TracedFloat(_Arithmetic, float):  # the operators above come first
     """A float with its formula."""
 
-    def __new__(cls, value: float, formula: Formula) -> TracedFloat:
+    def __new__(cls, value: float, formula: Formula) -> Self:
         """Make a float."""
         made = float.__new__(cls, value)
         made.formula = formula
@@ -130,10 +136,10 @@ class TracedFloat(_Arithmetic, float):  # type: ignore[misc]  # the operators ab
         return self
 
 
-class TracedInt(_Arithmetic, int):  # type: ignore[misc]
+class TracedInt(_Arithmetic, int):
     """A whole number with its formula; as the length of a range it is plain."""
 
-    def __new__(cls, value: int, formula: Formula) -> TracedInt:
+    def __new__(cls, value: int, formula: Formula) -> Self:
         """Make a whole number."""
         made = int.__new__(cls, value)
         made.formula = formula

@@ -21,12 +21,11 @@ import build123d as real
 from articad.kernels.part_script import FILE
 from articad.kernels.traced_numbers import plain, traced_math, without_dust
 
-__all__ = ["NotRecordedError", "Node", "Placed", "flat", "recorded_build123d", "solid_node"]
+__all__ = ["Node", "NotRecordedError", "Placed", "flat", "recorded_build123d", "solid_node"]
 
 _math: Final[Any] = traced_math()
 _PASSED: Final = ("Align", "Axis", "Mode", "ShapeList", "Vector")  # used as they are
 _IDENTITY: Final = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-_BY_NATURE: Final = real.Align.NONE  # where a primitive stands by itself
 
 
 class NotRecordedError(Exception):
@@ -57,8 +56,7 @@ class Frame:
 
     def __mul__(self, other: Any) -> Any:
         if isinstance(other, Frame):
-            columns = list(zip(*other.turn, strict=True))
-            return Frame([[_dot(row, column) for column in columns] for row in self.turn], self.apply(other.at))
+            return self._then(other)
         if isinstance(other, Placed):
             return other.moved(self)
         if isinstance(other, (list, tuple)):
@@ -114,15 +112,19 @@ class Frame:
 
     def offset(self, amount: Any) -> Frame:
         """Return a plane moved along its normal."""
-        return self * Frame(at=(0.0, 0.0, amount))
+        return self._then(Frame(at=(0.0, 0.0, amount)))
 
     def moved(self, other: Frame) -> Frame:
         """Return this plane moved in its own frame."""
-        return self * other
+        return self._then(other)
 
     def rotated(self, angles: Sequence[Any] = (0, 0, 0)) -> Frame:
         """Return this plane turned in its own frame."""
-        return self * rotation(*angles)
+        return self._then(rotation(*angles))
+
+    def _then(self, other: Frame) -> Frame:
+        columns = list(zip(*other.turn, strict=True))
+        return Frame([[_dot(row, column) for column in columns] for row in self.turn], self.apply(other.at))
 
     def __getattr__(self, name: str) -> Any:
         raise _refused(f"{name!r} of a plane or location")
@@ -428,16 +430,17 @@ def _fused(value: Any) -> Placed:
 
 
 def _aligned(align: Any, low: Sequence[Any], high: Sequence[Any]) -> tuple[Any, ...]:
-    """Return the shift that aligns a box from `low` to `high`."""
+    """Return the shift that aligns a box from `low` to `high`; where `low` is None, it is the opposite of `high`."""
     words = tuple(align) if isinstance(align, (tuple, list)) else (align,) * len(low)
-    shifts = {
-        real.Align.MIN: lambda a, b: -a,
-        real.Align.CENTER: lambda a, b: -(a + b) / 2,
-        real.Align.MAX: lambda a, b: -b,
-        _BY_NATURE: lambda a, b: 0.0,
-        None: lambda a, b: 0.0,
-    }
-    return tuple(shifts[word](a, b) for word, a, b in zip(words, low, high, strict=True))
+    return tuple(_shift(word, a, b) for word, a, b in zip(words, low, high, strict=True))
+
+
+def _shift(word: Any, low: Any, high: Any) -> Any:
+    if word == real.Align.MAX:
+        return -high
+    if word == real.Align.MIN:
+        return high if low is None else -low
+    return 0.0 if low is None or word != real.Align.CENTER else -(low + high) / 2
 
 
 _MIDDLE: Final = (real.Align.CENTER,) * 3
@@ -452,50 +455,39 @@ def _primitive(
     return Placed(3, node, lambda: make(*map(plain, numbers), align=None), frame)
 
 
-def box(length: Any, width: Any, height: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE, mode: Any = None) -> Placed:
+def box(length: Any, width: Any, height: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
     """Record build123d's `Box`."""
     return _primitive("box", (length, width, height), (0.0, 0.0, 0.0), (length, width, height), align, rotation, real.Box)
 
 
-def cylinder(radius: Any, height: Any, arc_size: Any = 360, rotation: Any = (0, 0, 0), align: Any = _MIDDLE, mode: Any = None) -> Placed:
+def cylinder(radius: Any, height: Any, arc_size: Any = 360, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
     """Record build123d's `Cylinder`."""
     if arc_size != 360:
         raise _refused("a part of a cylinder")
-    return _primitive("cylinder", (radius, height), (-radius, -radius, 0.0), (radius, radius, height), align, rotation, real.Cylinder)
+    return _primitive("cylinder", (radius, height), (None, None, 0.0), (radius, radius, height), align, rotation, real.Cylinder)
 
 
-def cone(
-    bottom_radius: Any,
-    top_radius: Any,
-    height: Any,
-    arc_size: Any = 360,
-    rotation: Any = (0, 0, 0),
-    align: Any = _MIDDLE,
-    mode: Any = None,
-) -> Placed:
+def cone(bottom_radius: Any, top_radius: Any, height: Any, arc_size: Any = 360, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
     """Record build123d's `Cone`."""
     if arc_size != 360:
         raise _refused("a part of a cone")
     wide = bottom_radius if plain(bottom_radius) >= plain(top_radius) else top_radius
-    return _primitive("cone", (bottom_radius, top_radius, height), (-wide, -wide, 0.0), (wide, wide, height), align, rotation, real.Cone)
+    return _primitive("cone", (bottom_radius, top_radius, height), (None, None, 0.0), (wide, wide, height), align, rotation, real.Cone)
 
 
-def sphere(radius: Any, *parts: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE, mode: Any = None) -> Placed:
+def sphere(radius: Any, *parts: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
     """Record build123d's `Sphere`."""
     if parts:
         raise _refused("a part of a sphere")
-    return _primitive("sphere", (radius,), (-radius,) * 3, (radius,) * 3, align, rotation, real.Sphere)
+    return _primitive("sphere", (radius,), (None,) * 3, (radius,) * 3, align, rotation, real.Sphere)
 
 
-def torus(major_radius: Any, minor_radius: Any, *parts: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE, mode: Any = None) -> Placed:
+def torus(major_radius: Any, minor_radius: Any, *parts: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
     """Record build123d's `Torus`."""
     if parts:
         raise _refused("a part of a torus")
-    wide, low = (
-        (major_radius + minor_radius,) * 2 + (minor_radius,),
-        (-major_radius - minor_radius,) * 2 + (-minor_radius,),
-    )
-    return _primitive("torus", (major_radius, minor_radius), low, wide, align, rotation, real.Torus)
+    wide = (major_radius + minor_radius, major_radius + minor_radius, minor_radius)
+    return _primitive("torus", (major_radius, minor_radius), (None,) * 3, wide, align, rotation, real.Torus)
 
 
 # ---------------------------------------------------------------------- sketches
@@ -505,40 +497,33 @@ def _outline(node: Node, frame: Frame, make: Callable[[], Any]) -> Placed:
     return Placed(2, node, make, frame)
 
 
-def circle(radius: Any, align: Any = (real.Align.CENTER,) * 2, mode: Any = None) -> Placed:
+def circle(radius: Any, align: Any = (real.Align.CENTER,) * 2) -> Placed:
     """Record build123d's `Circle`."""
-    x, y = _aligned(align, (-radius,) * 2, (radius,) * 2)
+    x, y = _aligned(align, (None,) * 2, (radius,) * 2)
     return _outline(Node("circle", (radius,), line=_line()), Frame(at=(x, y, 0.0)), lambda: real.Circle(plain(radius)))
 
 
-def rectangle(width: Any, height: Any, rotation: Any = 0, align: Any = (real.Align.CENTER,) * 2, mode: Any = None) -> Placed:
+def rectangle(width: Any, height: Any, rotation: Any = 0, align: Any = (real.Align.CENTER,) * 2) -> Placed:
     """Record build123d's `Rectangle`."""
-    x, y = _aligned(align, (-width / 2, -height / 2), (width / 2, height / 2))
+    x, y = _aligned(align, (None,) * 2, (width / 2, height / 2))
     frame = _turned(2, rotation) * Frame(at=(x, y, 0.0))
     return _outline(Node("rectangle", (width, height), line=_line()), frame, lambda: real.Rectangle(plain(width), plain(height)))
 
 
-def polygon(*points: Any, rotation: Any = 0, align: Any = None, mode: Any = None) -> Placed:
+def polygon(*points: Any, rotation: Any = 0, align: Any = None) -> Placed:
     """Record build123d's `Polygon`; its face looks down if the points run clockwise."""
     rows = points[0] if len(points) == 1 and isinstance(points[0], (list, tuple)) and isinstance(points[0][0], (list, tuple)) else points
     held = [_three(point)[:2] for point in rows]
     if len(held) > 1 and plain(held[0]) == plain(held[-1]):
         held = held[:-1]
-    ends = [
-        (sorted((point[axis] for point in held), key=plain)[0], sorted((point[axis] for point in held), key=plain)[-1]) for axis in (0, 1)
-    ]
+    ends = [(min((point[axis] for point in held), key=plain), max((point[axis] for point in held), key=plain)) for axis in (0, 1)]
     x, y = _aligned(align, *zip(*ends, strict=True))
     frame = _turned(2, rotation) * Frame(at=(x, y, 0.0))
     return _outline(Node("polygon", points=tuple(held), line=_line()), frame, lambda: real.Polygon(*plain(held), align=None))
 
 
 def regular_polygon(
-    radius: Any,
-    side_count: int,
-    major_radius: bool = True,
-    rotation: Any = 0,
-    align: Any = (real.Align.CENTER,) * 2,
-    mode: Any = None,
+    radius: Any, side_count: int, major_radius: bool = True, rotation: Any = 0, align: Any = (real.Align.CENTER,) * 2
 ) -> Placed:
     """Record build123d's `RegularPolygon`."""
     count = plain(side_count)
@@ -551,30 +536,30 @@ def regular_polygon(
     return polygon(*points, align=align)
 
 
-def slot_center_to_center(center_separation: Any, height: Any, rotation: Any = 0, mode: Any = None) -> Placed:
+def slot_center_to_center(center_separation: Any, height: Any, rotation: Any = 0) -> Placed:
     """Record build123d's `SlotCenterToCenter`: a rectangle and a circle at each of its ends."""
     x, radius = center_separation / 2, height / 2
     made = rectangle(center_separation, height) + [Frame(at=(side * x, 0.0, 0.0)) * circle(radius) for side in (-1, 1)]
     return made.moved(_turned(2, rotation))
 
 
-def slot_overall(width: Any, height: Any, rotation: Any = 0, align: Any = None, mode: Any = None) -> Placed:
+def slot_overall(width: Any, height: Any, rotation: Any = 0, align: Any = None) -> Placed:
     """Record build123d's `SlotOverall`."""
     if align is not None and any(word != real.Align.CENTER for word in (align if isinstance(align, (tuple, list)) else (align,))):
         raise _refused("a slot that is not centred")
     return slot_center_to_center(width - height, height, rotation)
 
 
-def rectangle_rounded(width: Any, height: Any, radius: Any, rotation: Any = 0, align: Any = None, mode: Any = None) -> Placed:
+def rectangle_rounded(width: Any, height: Any, radius: Any, rotation: Any = 0, align: Any = None) -> Placed:
     """Record build123d's `RectangleRounded`: two rectangles and a circle at each corner."""
     if align is not None and any(word != real.Align.CENTER for word in (align if isinstance(align, (tuple, list)) else (align,))):
         raise _refused("a rounded rectangle that is not centred")
     x, y = width / 2 - radius, height / 2 - radius
     corners = [Frame(at=(a * x, b * y, 0.0)) * circle(radius) for a in (-1, 1) for b in (-1, 1)]
-    return (rectangle(2 * x, height) + [rectangle(width, 2 * y), *corners]).moved(_turned(2, rotation))
+    return _fused([rectangle(2 * x, height), rectangle(width, 2 * y), *corners]).moved(_turned(2, rotation))
 
 
-def make_hull(edges: Any, mode: Any = None) -> Placed:
+def make_hull(edges: Any) -> Placed:
     """Record build123d's `make_hull` of circles, rectangles and polygons in one plane.
 
     The hull is the polygon through the points where its straight sides touch, and the circles. The side from circle i to circle j, which
@@ -636,7 +621,7 @@ def _corners(node: Node) -> list[tuple[Any, Any]]:
     return [(-x, -y), (x, -y), (x, y), (-x, y)]
 
 
-def polyline(*points: Any, close: bool = False, mode: Any = None) -> Placed:
+def polyline(*points: Any, close: bool = False) -> Placed:
     """Record build123d's `Polyline`."""
     rows = points[0] if len(points) == 1 and isinstance(points[0], (list, tuple)) else points
     held = [_three(point)[:2] for point in rows]
@@ -644,7 +629,7 @@ def polyline(*points: Any, close: bool = False, mode: Any = None) -> Placed:
     return Placed(1, Node("line", points=tuple(held), line=_line()), lambda: real.Polyline(*plain(held)))
 
 
-def make_face(edges: Any, mode: Any = None) -> Placed:
+def make_face(edges: Any) -> Placed:
     """Record build123d's `make_face` of a closed polyline."""
     lines = list(flat(edges))
     if len(lines) != 1 or lines[0].dimension != 1 or lines[0].node.kind != "line":
@@ -660,9 +645,9 @@ def make_face(edges: Any, mode: Any = None) -> Placed:
 # ---------------------------------------------------------------------- solids of sketches
 
 
-def extrude(to_extrude: Any = None, amount: Any = None, dir: Any = None, both: bool = False, taper: Any = 0, **other: Any) -> Placed:
+def extrude(to_extrude: Any = None, amount: Any = None, both: bool = False, **other: Any) -> Placed:
     """Record build123d's `extrude` along the normal of a sketch."""
-    if dir is not None or taper != 0 or amount is None or other.pop("until", None) is not None or isinstance(to_extrude, Picks):
+    if amount is None or other or isinstance(to_extrude, Picks):
         raise _refused("this form of extrude")
     sketch = _fused(to_extrude)
     if sketch.dimension != 2:
@@ -694,7 +679,7 @@ def _extruded(node: Node, frame: Frame, normal: Sequence[float], low: Any, high:
     return Node("at", operands=((made, frame * place),))
 
 
-def revolve(profiles: Any = None, axis: Any = real.Axis.Z, revolution_arc: Any = 360.0, clean: bool = True, mode: Any = None) -> Placed:
+def revolve(profiles: Any = None, axis: Any = real.Axis.Z, revolution_arc: Any = 360.0) -> Placed:
     """Record build123d's full `revolve` about an axis."""
     sketch = _fused(profiles)
     if revolution_arc != 360 or sketch.dimension != 2:
@@ -708,7 +693,9 @@ def revolve(profiles: Any = None, axis: Any = real.Axis.Z, revolution_arc: Any =
 def _revolved(node: Node, frame: Frame, vectors: tuple[tuple[Any, ...], ...], line: int) -> Node:
     if node.operands:
         return Node(
-            node.kind, operands=tuple((_revolved(inner, frame * place, vectors, line), Frame()) for inner, place in node.operands), line=line
+            node.kind,
+            operands=tuple((_revolved(inner, frame * place, vectors, line), Frame()) for inner, place in node.operands),
+            line=line,
         )
     back = frame.inverse()
     local = (back.apply(vectors[0]), back.direct(vectors[1]))
@@ -716,7 +703,7 @@ def _revolved(node: Node, frame: Frame, vectors: tuple[tuple[Any, ...], ...], li
     return Node("at", operands=((Node(kind, numbers, points=points, vectors=local, line=line), frame),))
 
 
-def loft(sections: Any = None, ruled: bool = False, clean: bool = True, mode: Any = None) -> Placed:
+def loft(sections: Any = None, ruled: bool = False) -> Placed:
     """Record build123d's ruled `loft` of polygons and rectangles."""
     held = list(flat(sections))
     if not ruled or len(held) < 2 or any(row.dimension != 2 or row.node.kind not in ("polygon", "rectangle") for row in held):
@@ -725,7 +712,7 @@ def loft(sections: Any = None, ruled: bool = False, clean: bool = True, mode: An
     return Placed(3, Node("loft", operands=sides, line=_line(), ruled=True), lambda: real.loft([row.real for row in held], ruled=True))
 
 
-def mirror(objects: Any = None, about: Any = None, mode: Any = None) -> Placed:
+def mirror(objects: Any = None, about: Any = None) -> Placed:
     """Record build123d's `mirror` of a solid about a plane."""
     shape, plane = _fused(objects), about if about is not None else PlaneType().XZ
     if shape.dimension != 3 or not isinstance(plane, Frame):

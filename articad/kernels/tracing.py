@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final
 
@@ -29,7 +30,16 @@ Json = dict[str, Any]
 _Number = float | list[int]  # plain, or the place of a formula
 
 
-def run(script: str, part: Json, variations: Sequence[Sequence[Json]], *, seconds: float, report: Callable[[Json], None]) -> None:
+def run(
+    script: str,
+    part: Json,
+    variations: Sequence[Sequence[Json]],
+    *,
+    needed: int,
+    budget: float,
+    seconds: float,
+    report: Callable[[Json], None],
+) -> None:
     """Report the operations of a script, then the measures of its solid at other dimensions.
 
     The first line of the report is `{"ok": true, "rows", "formulas", "connectors"}` or `{"ok": false, "reason"}`. Each further line has
@@ -39,6 +49,8 @@ def run(script: str, part: Json, variations: Sequence[Sequence[Json]], *, second
         script: The source.
         part: The brief of the part.
         variations: For each, dimensions by name, and others to try where the script does not build those.
+        needed: How many of the variations are always measured.
+        budget: Seconds after which the others are left out.
         seconds: Wall clock; the process is killed by SIGALRM after it.
         report: Receives each line.
     """
@@ -53,7 +65,10 @@ def run(script: str, part: Json, variations: Sequence[Sequence[Json]], *, second
         report({"ok": False, "reason": f"line {said['line']}: with traced numbers it fails: {said['type']}: {said['message']}"[:300]})
         return
     report({"ok": True} | told)
-    for options in variations:
+    started = time.monotonic()
+    for number, options in enumerate(variations):
+        if number >= needed and time.monotonic() - started > budget:
+            break
         measured: Json = {"ok": False}
         for choice, dimensions in enumerate(options):
             measured = {"choice": choice} | _measured(script, {**part, "dimensions": dimensions})
@@ -89,7 +104,7 @@ def _measured(script: str, part: Json) -> Json:
         solids = measure.solids_of(shape)
         if len(solids) != 1 or not measure.is_valid(solids[0]):
             return {"ok": False}
-        return {"ok": True, "faces": len(Solid(solids[0]).faces())} | measure.properties(solids[0])
+        return {"ok": True, "faces": len(Solid(solids[0]).clean().faces())} | measure.properties(solids[0])
     except BaseException:  # noqa: BLE001 - a script may raise anything
         return {"ok": False}
 

@@ -23,6 +23,7 @@ _INFIX: Final = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "^"}
 _CALLS: Final = {"abs": "abs", "min": "min", "max": "max", "sqrt": "sqrt", "hypot": "hypot", "floor": "floor", "ceil": "ceil", "mod": "mod"}
 _OF_ANGLES: Final = ("sin", "cos", "tan")  # FreeCAD's take degrees
 _ANGLES: Final = ("asin", "acos", "atan", "atan2")  # FreeCAD's give degrees with their unit
+_OTHERS: Final = {"neg": "(-{0})", "radians": "({0} * pi / 180)", "degrees": "({0} * 180 / pi)", "floordiv": "floor({0} / {1})"}
 _ARGUMENTS: Final = {"add": 2, "sub": 2, "mul": 2, "div": 2, "pow": 2, "mod": 2, "floordiv": 2, "atan2": 2, "hypot": 2, "min": 0, "max": 0}
 _PRIMITIVES: Final = {
     "box": ("Part::Box", ("Length", "Width", "Height")),
@@ -31,6 +32,7 @@ _PRIMITIVES: Final = {
     "sphere": ("Part::Sphere", ("Radius",)),
     "torus": ("Part::Torus", ("Radius1", "Radius2")),
 }
+_NUMBERS: Final = {kind: len(names) for kind, (_, names) in _PRIMITIVES.items()} | {"prism": 1, "ring": 1, "fillet": 1, "chamfer": 1}
 _OPERANDS: Final = {"fuse": 2, "cut": 2, "common": 2, "loft": 2, "fillet": 1, "chamfer": 1, "mirror": 1}
 
 
@@ -81,20 +83,20 @@ class _Formulas:
             raise PoisonedError("a formula has the wrong operands")
         words = [self.text(operand) for operand in operands]
         if name in _INFIX:
-            return f"({words[0]} {_INFIX[name]} {words[1]})"
-        if name in _CALLS:
-            return f"{_CALLS[name]}({'; '.join(words)})"
-        if name in _OF_ANGLES:
-            return f"{name}({self._inner(operands[0], ('radians',)) or f'{words[0]} * 180 / pi'})"
-        if name in _ANGLES:
-            return f"({name}({'; '.join(words)}) / 1 deg * pi / 180)"
-        if name == "degrees":
-            angle = self._inner(operands[0], _ANGLES)
-            return f"({angle} / 1 deg)" if angle else f"({words[0]} * 180 / pi)"
-        rest = {"neg": "(-{0})", "radians": "({0} * pi / 180)", "floordiv": "floor({0} / {1})"}
-        if name not in rest:
+            text = f"({words[0]} {_INFIX[name]} {words[1]})"
+        elif name in _CALLS:
+            text = f"{_CALLS[name]}({'; '.join(words)})"
+        elif name in _OF_ANGLES:
+            text = f"{name}({self._inner(operands[0], ('radians',)) or f'{words[0]} * 180 / pi'})"
+        elif name in _ANGLES:
+            text = f"({name}({'; '.join(words)}) / 1 deg * pi / 180)"
+        elif name == "degrees" and (angle := self._inner(operands[0], _ANGLES)):
+            text = f"({angle} / 1 deg)"
+        elif name in _OTHERS:
+            text = _OTHERS[name].format(*words)
+        else:
             raise PoisonedError("a formula has an unknown operation")
-        return rest[name].format(*words)
+        return text
 
     def _inner(self, operand: Any, kinds: tuple[str, ...]) -> str:
         """Return the degrees inside a conversion, without the conversion; empty if the operand is none."""
@@ -134,62 +136,56 @@ class _Objects:
 
     def add(self, place: int, row: Json) -> None:
         """Add the objects of an operation."""
-        kind, operands = row.get("kind"), row.get("operands")
+        kind, operands = str(row.get("kind")), row.get("operands")
         if not isinstance(operands, list) or not all(type(operand) is int and 0 <= operand < place for operand in operands):
             raise PoisonedError("an operation has the wrong operands")
-        if len(operands) < _OPERANDS.get(str(kind), 0):
+        if len(operands) < _OPERANDS.get(kind, 0):
             raise PoisonedError("an operation has too few operands")
-        used, line = [self._places[operand] for operand in operands], row.get("line")
-        self._note = self._described(line)
+        self._note = self._described(row.get("line"))
         numbers = _listed(row.get("numbers"))
+        if len(numbers) != _NUMBERS.get(kind, 0):
+            raise PoisonedError("an operation has the wrong numbers")
+        make = self._made_of_operands if kind in _OPERANDS else self._made_of_numbers
+        self._places.append(make(kind, [self._places[operand] for operand in operands], numbers, row))
+
+    def _made_of_operands(self, kind: str, used: list[int], numbers: list[Any], row: Json) -> int:
+        """Add a union, a cut or the like, and return its place."""
+        if kind == "cut":
+            tool = (
+                used[1] if len(used) == 2 else self._object("Part::MultiFuse", "Tools", links={"Shapes": used[1:]}, given={"Refine": False})
+            )
+            return self._object("Part::Cut", "Cut", links={"Base": used[0], "Tool": tool}, given={"Refine": True})
+        if kind in ("fillet", "chamfer"):
+            return self._dressed(kind, used[0], numbers, row.get("edges"))
+        if kind == "mirror":
+            return self._object("Part::Mirroring", "Mirror", links={"Source": used[0]}, vectors=self._axis(row, "Base", "Normal"))
+        if kind == "loft":
+            return self._object("Part::Loft", "Loft", links={"Sections": used}, given={"Solid": True, "Ruled": True})
+        family = "Part::MultiFuse" if kind == "fuse" else "Part::MultiCommon"
+        return self._object(family, kind.title(), links={"Shapes": used}, given={"Refine": True})
+
+    def _made_of_numbers(self, kind: str, _: list[int], numbers: list[Any], row: Json) -> int:
+        """Add a primitive, an extrusion or a revolution, and return its place."""
         if kind in _PRIMITIVES:
             family, names = _PRIMITIVES[kind]
-            if len(numbers) != len(names):
-                raise PoisonedError("a primitive has the wrong numbers")
-            made = self._object(family, str(kind).title(), placed=row, lengths=dict(zip(names, numbers, strict=True)))
-        elif kind in ("fuse", "common"):
-            family = "Part::MultiFuse" if kind == "fuse" else "Part::MultiCommon"
-            made = self._object(family, str(kind).title(), links={"Shapes": used}, given={"Refine": True})
-        elif kind == "cut":
-            tool = used[1]
-            if len(used) > 2:
-                tool = self._object("Part::MultiFuse", "Tools", links={"Shapes": used[1:]}, given={"Refine": False})
-            made = self._object("Part::Cut", "Cut", links={"Base": used[0], "Tool": tool}, given={"Refine": True})
-        elif kind in ("fillet", "chamfer"):
-            made = self._dressed(str(kind), used[0], numbers, row.get("edges"))
-        elif kind == "mirror":
-            made = self._object("Part::Mirroring", "Mirror", links={"Source": used[0]}, vectors=self._axis(row, "Base", "Normal"))
-        elif kind == "loft":
-            made = self._object("Part::Loft", "Loft", links={"Sections": used}, given={"Solid": True, "Ruled": True})
-        elif kind == "wire":
-            made = self._polygon(row)
-        elif kind == "prism" and len(numbers) == 1:
-            outline = self._polygon(row)
-            z = [line[2] for line in _turn(row)]
-            made = self._object(
+            return self._object(family, kind.title(), placed=row, lengths=dict(zip(names, numbers, strict=True)))
+        if kind == "wire":
+            return self._polygon(row)
+        if kind == "prism":
+            return self._object(
                 "Part::Extrusion",
                 "Extrude",
-                links={"Base": outline},
+                links={"Base": self._polygon(row)},
                 given={"DirMode": "Custom", "Solid": True},
-                vectors={"Dir": z},
+                vectors={"Dir": [line[2] for line in _turn(row)]},
                 lengths={"LengthFwd": numbers[0]},
             )
-        elif kind in ("revolution", "ring"):
-            outline = (
-                self._polygon(row)
-                if kind == "revolution"
-                else self._object("Part::Circle", "Circle", placed=row, lengths={"Radius": numbers[0]})
-            )
-            made = self._object(
-                "Part::Revolution",
-                "Revolve",
-                links={"Source": outline},
-                given={"Angle": 360.0, "Solid": True},
-                vectors=self._axis(row, "Base", "Axis"),
-            )
-        else:
+        if kind not in ("revolution", "ring"):
             raise PoisonedError("the trace has an unknown operation")
-        self._places.append(made)
+        ring = kind == "ring"
+        outline = self._object("Part::Circle", "Circle", placed=row, lengths={"Radius": numbers[0]}) if ring else self._polygon(row)
+        axis, given = self._axis(row, "Base", "Axis"), {"Angle": 360.0, "Solid": True}
+        return self._object("Part::Revolution", "Revolve", links={"Source": outline}, given=given, vectors=axis)
 
     def _described(self, line: Any) -> str:
         if type(line) is not int or not 0 < line <= len(self._source):

@@ -1,8 +1,9 @@
 """Feature trees of parts whose scripts are written in build123d.
 
 The script runs once more in the worker's sandbox, with its dimensions as traced numbers, and reports its operations with their formulas.
-FreeCAD makes them as features of its Part workbench whose properties follow the dimensions. Then measurement decides: each dimension is
-changed alone, and all are changed together, in FreeCAD and in the script. A dimension whose changes do not give the same solid in both is
+FreeCAD makes them as features of its Part workbench whose properties follow the dimensions. Then measurement decides: all dimensions are
+changed together in three ways, each count is changed alone, and so is each other dimension while time allows, in FreeCAD and in the
+script. A dimension whose changes do not give the same solid in both is
 fixed in the tree. A tree that is not the part's solid to begin with is none. Trees are cached by script, dimensions and versions.
 """
 
@@ -11,7 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
@@ -37,10 +38,12 @@ __all__ = ["PartTree", "part_tree"]
 RECIPE: Final = 1  # increased when trees are made or judged differently, so that cached ones are made again
 SAME: Final = 1e-6  # relative difference of volumes, areas and inertias; of centres in terms of the part's size
 MAX_TREE_BYTES: Final = 64 * 2**20
+_UNITS: Final = {"mm³": "mm3", "mm²": "mm2", "mm": "mm", "mm⁵": "mm5"}
 _PROGRAM: Final = Path(__file__).parent / "inside_freecad" / "tree.py"
 _SECONDS: Final = 240.0
-_STEPS: Final = ((0.07, 0.02, 0.004), (-0.05, -0.02, -0.004))  # relative changes, the first that the script builds
-_ZERO_STEPS: Final = ((0.7, 0.1), (-0.5, -0.1))  # changes of a dimension that is zero [mm, deg]
+_BUDGET: Final = 15.0  # seconds of FreeCAD, and of the script, after which no more dimensions are changed alone
+_STEPS: Final = ((-0.05, -0.02, -0.004), (0.07, 0.02, 0.004))  # relative changes down and up, the first that the script builds
+_ZERO_STEPS: Final = ((0.5, 0.1), (0.7, 0.1))  # changes of a dimension that is zero [mm, deg]
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,9 @@ class PartTree:
     seat: SE3 = field(default_factory=SE3.identity)
 
 
-def part_tree(target: ResolvedPart, built: BuiltPart, script: bytes, *, kernel: Build123dKernel, freecad: FreeCAD, cache: BuildCache) -> PartTree:
+def part_tree(
+    target: ResolvedPart, built: BuiltPart, script: bytes, *, kernel: Build123dKernel, freecad: FreeCAD, cache: BuildCache
+) -> PartTree:
     """Return the feature tree of a part that a build123d script built; from the cache if it is there.
 
     Args:
@@ -114,33 +119,31 @@ class _Maker:
             return {"reason": f"its script cannot be traced: {poison}", "fixed": {}}
 
     def _judged(self) -> Json:
-        alone = {name: list(_moves(name, value)) for name, value in self._dimensions.items()}
-        tried = [[{**self._dimensions, name: value} for value in values] for name in alone for values in alone[name]]
-        owners = [name for name in alone for _ in alone[name]]
-        free = [name for name in alone if not isinstance(self._dimensions[name], int)]
-        tried += self._together(free)
-        trace, script = self._traced(tried)
-        made, nominal, varied = self._in_freecad(trace, script)
+        counts = [name for name, value in self._dimensions.items() if isinstance(value, int)]
+        free = [name for name in self._dimensions if name not in counts]
+        owners = [*counts, *free]
+        alone = [_moves(name, self._dimensions[name], up=place % 2 == 0) for place, name in enumerate(owners)]
+        together = self._together(free)
+        tried = [*together, *([{**self._dimensions, name: value} for value in values] for name, values in zip(owners, alone, strict=True))]
+        trace, script = self._traced(tried, needed=len(together) + len(counts))
+        made, nominal, varied = self._in_freecad(trace, script, needed=len(together) + len(counts))
         if wrong := _difference(nominal, script[0], nominal, script[0]):
             raise NoTreeError(f"its features give another solid: {wrong}")
         fixed: dict[str, str] = {}
-        for owner, mine, theirs in zip(owners, varied, script[1:], strict=False):
-            if owner in fixed:
-                continue
-            if not theirs.get("ok"):
+        for owner, mine, theirs in zip(owners, varied[len(together) :], script[1 + len(together) :], strict=False):
+            if not theirs["ok"]:
                 fixed[owner] = "the script builds no part with another value near it"
             elif wrong := _difference(mine, theirs, nominal, script[0]):
                 fixed[owner] = self._why(owner, wrong)
         if set(fixed) == set(self._dimensions) and fixed:
             raise NoTreeError(f"its features follow no dimension: {next(iter(fixed.values()))}")
         live = [name for name in free if name not in fixed]
-        together = list(zip(varied[len(owners) :], script[1 + len(owners) :], strict=True))
         if live != free:
-            trace, script = self._traced(self._together(live))
-            made, nominal, varied = self._in_freecad(trace, script)
-            together = list(zip(varied, script[1:], strict=True))
-        for mine, theirs in together:
-            if theirs.get("ok") and (wrong := _difference(mine, theirs, nominal, script[0])):
+            together = self._together(live)
+            trace, script = self._traced(together, needed=len(together))
+            made, nominal, varied = self._in_freecad(trace, script, needed=len(together))
+        for mine, theirs in zip(varied[: len(together)], script[1 : 1 + len(together)], strict=True):
+            if theirs["ok"] and (wrong := _difference(mine, theirs, nominal, script[0])):
                 raise NoTreeError(f"its features do not follow several dimensions at once: {wrong}")
         (self._folder / "part.FCStd").write_bytes(settled(made))
         return {"reason": "", "fixed": fixed, "connectors": trace["connectors"], "nominal": nominal}
@@ -157,36 +160,46 @@ class _Maker:
         signs = ([1.0] * len(names), [-1.0] * len(names), [(-1.0) ** place for place in range(len(names))])
         return [
             [
-                {**self._dimensions, **{name: _moved(self._dimensions[name], step * sign) for name, sign in zip(names, row, strict=True)}}
-                for step in (0.05, 0.01, 0.002)
+                {
+                    **self._dimensions,
+                    **{
+                        name: _moved(self._dimensions[name], step if sign > 0 else -0.8 * step)
+                        for name, sign in zip(names, row, strict=True)
+                    },
+                }
+                for step in (0.06, 0.01, 0.002)
             ]
             for row in signs
         ]
 
-    def _traced(self, tried: list[list[Json]]) -> tuple[Json, list[Json]]:
-        """Return the trace, and the solid's measures: first unchanged, then at the first buildable of each list of dimensions."""
+    def _traced(self, tried: list[list[Json]], needed: int) -> tuple[Json, list[Json]]:
+        """Return the trace, and the solid's measures: first unchanged, then at the first buildable of each list of dimensions.
+
+        The first `needed` are always there; others may be missing at the end where time is over.
+        """
         limits = replace(self._kernel.limits, seconds=self._kernel.limits.seconds + self._kernel.limits.probe_seconds, probe_seconds=0.0)
-        job = {"script": self._source, "part": self._brief, "variations": [[self._dimensions], *tried]}
+        variations = [[self._dimensions], *tried]
+        job = {"script": self._source, "part": self._brief, "variations": variations, "needed": needed + 1, "budget": _BUDGET}
         lines = self._kernel.run_task("trace", job, limits)
         if not lines:
             raise NoTreeError("its script ends the process when it is traced")
         if lines[0].get("ok") is not True:
             raise NoTreeError(scrubbed(lines[0].get("reason", "its script cannot be traced"), 300))
-        if len(lines) != len(tried) + 2:
+        if not needed + 2 <= len(lines) <= len(tried) + 2:
             raise NoTreeError("its script takes too long to be run at other dimensions")
         measured = [_measures(line) for line in lines[1:]]
-        for line, options in zip(measured, job["variations"], strict=True):
+        for line, options in zip(measured, variations, strict=False):
             if line["ok"]:
                 line["dimensions"] = options[line["choice"]]
         if not measured[0]["ok"]:
             raise NoTreeError("its script builds no valid solid")
         return lines[0], measured
 
-    def _in_freecad(self, trace: Json, script: list[Json]) -> tuple[bytes, Json, list[Json]]:
-        """Return the document that FreeCAD makes, the measures of its solid, and those at each variation; an empty one is not built."""
+    def _in_freecad(self, trace: Json, script: list[Json], needed: int) -> tuple[bytes, Json, list[Json]]:
+        """Return the document that FreeCAD makes, the measures of its solid, and those at each variation."""
         job = tree_objects(trace.get("rows"), trace.get("formulas"), self._dimensions, self._source.splitlines())
         changes = [_changed(self._dimensions, row["dimensions"]) if row["ok"] else {} for row in script[1:]]
-        job |= {"dimensions": self._dimensions, "variations": [change for change in changes if change]}
+        job |= {"dimensions": self._dimensions, "variations": changes, "needed": needed, "budget": _BUDGET}
         with self._kernel.job_folder() as folder:
             (folder / "job.json").write_text(json.dumps(job))
             ended = self._freecad.run(_PROGRAM, folder=folder, limits=FreeCADLimits(seconds=_SECONDS))
@@ -201,8 +214,7 @@ class _Maker:
         nominal, again = report["nominal"], report["again"]
         if not nominal.get("ok") or not again.get("ok") or _difference(again, nominal, nominal, nominal):
             raise NoTreeError("FreeCAD's features do not come back to the solid they started from")
-        rows = iter(report["varied"])
-        return content, nominal, [next(rows) if change else {"ok": False} for change in changes]
+        return content, nominal, report["varied"]
 
 
 class NoTreeError(Exception):
@@ -210,20 +222,15 @@ class NoTreeError(Exception):
 
 
 def _moved(value: float, step: float) -> float:
-    if isinstance(value, int):
-        return value + (1 if step > 0 else -1)
     return value * (1 + step) if value else step * 10
 
 
-def _moves(name: str, value: float) -> Iterator[list[float]]:
-    """Yield the values to which one dimension is changed, upwards and downwards, each with smaller changes instead."""
+def _moves(name: str, value: float, up: bool) -> list[float]:
+    """Return the values to which one dimension is changed, smaller changes last: a script may refuse large ones."""
     if isinstance(value, int) and name.endswith("_count"):
-        yield [value + 1, value + 2]
-        if value > 1:
-            yield [value - 1]
-        return
-    for steps, zero in zip(_STEPS, _ZERO_STEPS, strict=True):
-        yield [float(value) * (1 + step) for step in steps] if value else list(zero)
+        return [value + 1, value + 2, value - 1] if value > 1 else [value + 1, value + 2]
+    steps, zero = (_STEPS[up], _ZERO_STEPS[up])
+    return [float(value) * (1 + step) for step in steps] if value else list(zero)
 
 
 def _changed(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
@@ -256,15 +263,16 @@ def _difference(mine: Json, theirs: Json, mine_before: Json, theirs_before: Json
     if not mine.get("ok"):
         return f"FreeCAD cannot compute {', '.join(mine.get('invalid', [])) or 'one valid solid'}"
     volume, area = theirs["volume_mm3"], theirs["area_mm2"]
-    if abs(mine["volume_mm3"] - volume) > SAME * abs(volume):
-        return f"volume {mine['volume_mm3']:.6g} instead of {volume:.6g} mm³"
-    if abs(mine["area_mm2"] - area) > SAME * area:
-        return f"area {mine['area_mm2']:.6g} instead of {area:.6g} mm²"
     reach = math.sqrt(area)
-    if (off := float(np.abs(np.subtract(mine["com_mm"], theirs["com_mm"])).max())) > SAME * reach:
-        return f"centre {off:.3g} mm off"
-    if float(np.abs(np.subtract(mine["inertia_mm5"], theirs["inertia_mm5"])).max()) > 10 * SAME * abs(volume) * reach**2:
-        return "another inertia"
+    for what, unit, tolerance in (
+        ("volume", "mm³", SAME * abs(volume)),
+        ("area", "mm²", SAME * area),
+        ("com", "mm", SAME * reach),
+        ("inertia", "mm⁵", 10 * SAME * abs(volume) * reach**2),
+    ):
+        off = float(np.abs(np.subtract(mine[f"{what}_{_UNITS[unit]}"], theirs[f"{what}_{_UNITS[unit]}"])).max())
+        if not off <= tolerance:
+            return f"its {what.replace('com', 'centre')} is {off:.3g} {unit} off"
     if mine["faces"] - mine_before["faces"] != theirs["faces"] - theirs_before["faces"]:
         return f"{mine['faces']} faces instead of {theirs['faces']}"
     return ""

@@ -110,12 +110,20 @@ class _Writer:
             return
         if values is None:
             values = self.document.addObject("App::VarSet", f"Dimensions_{part['object']}")
-        live = part["kind"] == "body"  # a mirror image has the dimensions of its source
-        values.Label = f"{part['name']} dimensions{'' if live else ' (frozen shape)' if part['frozen'] else ' (of ' + part['source'] + ')'}"
+        body = part["kind"] == "body"  # a mirror image has the dimensions of its source
+        fixed = [row["name"] for row in part["dimensions"] if not row["live"]] if body else []
+        some = f" ({', '.join(fixed)} fixed)" if fixed else ""
+        values.Label = (
+            f"{part['name']} dimensions{some if body else ' (frozen shape)' if part['frozen'] else ' (of ' + part['source'] + ')'}"
+        )
         for row in part["dimensions"]:
-            name = f"d_{row['name']}"
+            name, live = f"d_{row['name']}", body and row["live"]
             if name not in values.PropertiesList:
-                _number(values, name, row["value"], "Dimensions" if live else "Fixed dimensions", "", live=live)
+                _number(values, name, row["value"], "Dimensions" if live else "Fixed dimensions", row["why"] if body else "", live=live)
+            elif not live:
+                values.setGroupOfProperty(name, "Fixed dimensions")
+                values.setDocumentationOfProperty(name, row["why"])
+                values.setEditorMode(name, ["ReadOnly"])
             setattr(values, name, row["value"])
             if row["expression"]:
                 values.setExpression(name, row["expression"])
@@ -181,6 +189,7 @@ class _Writer:
             shape.importBrep(part["file"])
             feature.Shape = shape
             feature.Label = f"{part['name']} body (frozen)"
+            feature.Label2 = f"Frozen: {part['why']}" if part.get("why") else ""
         return feature
 
     def _body(self, part: Json, container: Any) -> Any:
@@ -196,11 +205,12 @@ class _Writer:
         body.Placement = placement(part["seat"]) * body.Placement
         container.addObject(body)
         grouped = {member.Name for member in body.Group}
-        for item in copied:  # sheets and the like that a script made beside its body
-            if item not in values and item is not body and item.Name not in grouped and item.TypeId == "Spreadsheet::Sheet":
+        for item in copied:  # what a body is made of beside its own features, and sheets that a script made
+            beside = item.TypeId.startswith("Part::") or item.TypeId == "Spreadsheet::Sheet"
+            if item is not body and item.Name not in grouped and beside:
                 container.addObject(item)
         copied = [item for item in copied if not self._is_spare(item, body)]
-        self.hidden += [item.Name for item in copied if item.TypeId == "PartDesign::CoordinateSystem"]
+        self.hidden += [item.Name for item in copied if item.TypeId in ("PartDesign::CoordinateSystem", "Part::Mirroring")]
         self._dimensions(part, container, values[0] if values else None)
         for item in copied:  # unchanged: a sketch that is solved again may differ in its last bits
             item.purgeTouched()

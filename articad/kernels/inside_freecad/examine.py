@@ -17,6 +17,8 @@ import FreeCAD as App
 
 Json = dict[str, Any]
 
+_SHOWN = ("PartDesign::Body", "Part::Feature", "Part::Mirroring")  # what shows a part; a body may be made of mirror images
+
 
 def main() -> None:
     """Read the job, do its steps, report."""
@@ -101,7 +103,8 @@ def _shape(part: Any) -> Any:
 
 def _body(part: Any) -> Any:
     container = part.LinkedObject if part.TypeId == "App::Link" else part
-    return next((item for item in container.Group if item.TypeId in ("PartDesign::Body", "Part::Feature", "Part::Mirroring")), None)
+    held = {item.TypeId: item for item in container.Group if item.TypeId in _SHOWN}
+    return next((held[kind] for kind in _SHOWN if kind in held), None)
 
 
 def _material(part: Any) -> list[Any] | None:
