@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from articad.commands.command import argument, command
-from articad.commands.options import FORMATS, SANDBOX, SPLIT, formats
+from articad.commands.options import FORMATS, SANDBOX, SPLIT, TREES, formats
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
         "--process", choices=["fdm", "sla", "sls"], default="fdm", help="the printing process for 3MF: gaps are checked against it (fdm)"
     ),
     SPLIT,
+    TREES,
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
@@ -64,6 +65,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         "process": options.process,
         "keep_frames": options.keep_frames,
         "split": options.split,
+        "trees": options.trees,
     }
     exports: dict[str, Report] = {}
     with terminal.progress("Exporting", total=len(options.formats)) as tell:
@@ -101,13 +103,14 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         help="for URDF: give every link its part's frame, with an empty link and a fixed joint where a joint's axis misses its origin",
     ),
     SPLIT,
+    TREES,
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
     from articad.formats import convert, format_of
 
     target = Path(options.target)
-    given = {"keep_frames": options.keep_frames, "split": options.split}
+    given = {"keep_frames": options.keep_frames, "split": options.split, "trees": options.trees}
     more: dict[str, Any] = {name: True for name, value in given.items() if value}  # a format without the option refuses it
     read = {"root": options.root, "fuse": options.fuse, "srdf": options.srdf}
     with terminal.progress("Converting"):

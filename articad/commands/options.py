@@ -83,6 +83,11 @@ EXPORT = argument("--export", metavar="FORMATS", dest="formats", type=formats, d
 PICTURES = argument("--no-pictures", dest="pictures", action="store_false", help="draw neither parts nor motion, and write no page")
 SET = argument("--set", metavar="NAME=VALUE", dest="parameters", type=parameter, action="append", default=[], help="replace a parameter")
 SPLIT = argument("--split", action="store_true", help="for FreeCAD: write one file for each part, and an assembly that links to them")
+TREES = argument(
+    "--trees",
+    action="store_true",
+    help="for FreeCAD: trace build123d scripts, so that their parts get feature trees that follow the parameters (slower the first time)",
+)
 BUILD_ARGUMENTS = (
     OUT,
     argument("--kernel", choices=["build123d", "freecad"], default=None, help="the kernel that builds part scripts (the plan's choice)"),

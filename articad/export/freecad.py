@@ -46,7 +46,7 @@ _PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that F
 
 @of_the_product
 def write_freecad(
-    assembly: Assembly, *, strict: bool = False, freecad: FreeCAD | None = None, split: bool = False, trees: bool = True
+    assembly: Assembly, *, strict: bool = False, freecad: FreeCAD | None = None, split: bool = False, trees: bool = False
 ) -> Bundle:
     """Write an assembly as a FreeCAD 1.0 document; FreeCAD 1.1 opens it as well.
 
@@ -57,7 +57,7 @@ def write_freecad(
         freecad: The FreeCAD that writes it; by default the installed one. Without FreeCAD, the document is written as by
             `write_freecad_alone`.
         trees: Give parts whose scripts are written in build123d their feature trees, which are traced, tried at other dimensions, and
-            cached; without them such parts are frozen.
+            cached, which takes seconds for each part the first time; without them such parts are frozen.
 
     Returns:
         One file, `<name>.FCStd`, the same bytes each time on the same FreeCAD, and with `split` the files in `<name>_parts`. It was

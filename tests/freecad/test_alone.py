@@ -81,7 +81,7 @@ def test_freecad_opens_it_and_solves_without_moving_a_part(name: str) -> None:
 @opened.needs_freecad
 @pytest.mark.parametrize("name", ["wardrobe", "geared_four_bar"])
 def test_freecad_finds_in_it_what_it_writes_itself(name: str) -> None:
-    bundle = write_freecad(assembly(name), trees=False)
+    bundle = write_freecad(assembly(name))
     (theirs,) = opened.steps(bundle.files[bundle.main], {"do": "look"})
     (ours,) = opened.steps(content(name), {"do": "look"})
     assert _own(ours["objects"]) == _own(theirs["objects"])
@@ -128,13 +128,13 @@ def test_a_part_that_is_only_a_mesh_is_a_closed_mesh_in_freecad() -> None:
 def test_without_freecad_documents_are_written_and_what_is_lost_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for variable in ("ARTICAD_FREECAD", "XDG_DATA_HOME", "PATH"):
         monkeypatch.setenv(variable, str(tmp_path))
-    bundle = write_freecad(assembly("wardrobe"), trees=False)
+    bundle = write_freecad(assembly("wardrobe"))
     assert bundle.findings.ok
     assert "articad install freecad" in next(iter(bundle.findings)).hint
     assert bundle.files[bundle.main] == content("wardrobe")  # each time the same bytes
     assert [loss.lost for loss in bundle.losses if loss.where == "parts.leg"]
     with pytest.raises(UnrepresentableError):
-        write_freecad(assembly("geared_four_bar"), strict=True, trees=False)
+        write_freecad(assembly("geared_four_bar"), strict=True)
 
 
 def test_without_freecad_the_commands_that_need_it_say_so_in_a_sentence(

@@ -35,7 +35,7 @@ def assembly(name: str) -> ac.Assembly:
 
 @cache
 def content(name: str) -> bytes:
-    bundle = write_freecad(assembly(name), trees=False)
+    bundle = write_freecad(assembly(name))
     assert bundle.findings.ok
     assert not bundle.findings, bundle.findings
     return bundle.files[bundle.main]
@@ -94,7 +94,7 @@ def test_the_residuals_see_a_part_that_is_out_of_place() -> None:
 
 
 def test_the_same_assembly_gives_the_same_bytes() -> None:
-    again = write_freecad(assembly("wardrobe"), trees=False)
+    again = write_freecad(assembly("wardrobe"))
     assert again.files[again.main] == content("wardrobe")
 
 
@@ -126,10 +126,10 @@ def test_parameters_move_connectors_parts_and_limits() -> None:
 
 
 def test_what_freecad_does_not_hold_is_a_loss_and_strict_refuses_it() -> None:
-    losses = write_freecad(assembly("geared_four_bar"), trees=False).losses
+    losses = write_freecad(assembly("geared_four_bar")).losses
     assert any(loss.where.startswith("couplings.") and loss.refused for loss in losses)
     with pytest.raises(UnrepresentableError):
-        write_freecad(assembly("geared_four_bar"), strict=True, trees=False)
+        write_freecad(assembly("geared_four_bar"), strict=True)
 
 
 def test_a_freecad_that_fails_is_an_error_with_its_last_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -137,7 +137,7 @@ def test_a_freecad_that_fails_is_an_error_with_its_last_words(tmp_path: Path, mo
     broken.write_text("import sys\nprint('no such thing', flush=True)\nsys.exit(3)\n")
     monkeypatch.setattr(export, "PROGRAM", broken)
     with pytest.raises(ExportError, match="no such thing") as raised:
-        write_freecad(assembly("metronome"), trees=False)
+        write_freecad(assembly("metronome"))
     assert [finding.code for finding in raised.value.findings] == ["E_FREECAD"]
 
 
@@ -159,7 +159,7 @@ def test_a_freecad_that_is_named_is_not_replaced_by_another(monkeypatch: pytest.
 @pytest.mark.parametrize("native", [False, True], ids=["freecad", "alone"])
 def test_a_parameter_over_a_frozen_shape_is_fixed_and_says_so(native: bool) -> None:
     made = assembly("wardrobe")
-    bundle = write_freecad_alone(made) if native else write_freecad(made, trees=False)
+    bundle = write_freecad_alone(made) if native else write_freecad(made)
     (look,) = opened.steps(bundle.files[bundle.main], {"do": "look"})
     groups = {name: (group, editable) for name, (group, _, editable) in look["parameters"].items()}
     shown = {

@@ -106,7 +106,7 @@ def test_the_next_freecad_loses_a_shape_whose_surfaces_have_no_end(monkeypatch: 
     """The fault that `bounded` mends: written as before, the knob is gone, and the look says so."""
     for module in ("articad.export.freecad_job", "articad.export.freecad_file"):
         monkeypatch.setattr(sys.modules[module], "bounded", lambda brep: brep)
-    written = write_freecad(assembly("four_bar"), freecad=freecad_install.find(), trees=False)
+    written = write_freecad(assembly("four_bar"), freecad=freecad_install.find())
     findings = verify(written.files[written.main], assembly("four_bar"), opened.newer())
     assert "E_FREECAD" in findings.codes
 

@@ -57,14 +57,14 @@ def same_mechanism(one: ac.Assembly, other: ac.Assembly, *, mm: float, rad: floa
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in EXAMPLES.glob("*/plan.json")))
 def test_writing_reading_and_writing_again_keeps_the_mechanism(name: str, tmp_path: Path) -> None:
     made = assembly(name)
-    bundle = write_freecad(made, trees=False)
+    bundle = write_freecad(made)
     (path,) = bundle.write(tmp_path / "once")
     once = read_freecad(path)
     mesh = made.parts[made.ground].mesh
     assert mesh is not None
     diagonal = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
     same_mechanism(made, once, mm=1e-9 * diagonal, rad=1e-9)
-    (again,) = write_freecad(once, trees=False).write(tmp_path / "twice")
+    (again,) = write_freecad(once).write(tmp_path / "twice")
     twice = read_freecad(again)
     same_mechanism(once, twice, mm=1e-9 * diagonal, rad=1e-9)
     for solid, read, again_read in zip(*(of.parts.values() for of in (made, once, twice)), strict=True):
@@ -79,7 +79,7 @@ def test_writing_reading_and_writing_again_keeps_the_mechanism(name: str, tmp_pa
 @opened.needs_freecad
 def test_a_document_without_our_records_has_the_same_poses(tmp_path: Path) -> None:
     made = assembly("metronome")
-    (path,) = write_freecad(made, trees=False).write(tmp_path)
+    (path,) = write_freecad(made).write(tmp_path)
     foreign = read_freecad(path, metadata=False)
     assert foreign.mechanism.mobility == made.mechanism.mobility
     mm, rad = opened.moved(dict(made.at()), dict(foreign.at()))
@@ -108,7 +108,7 @@ def with_axis_askew(path: Path, frame: str, degrees: float) -> Path:
 @opened.needs_freecad
 @pytest.mark.parametrize("frame", ["rod__big_end", "rod__small_end"])
 def test_a_crank_slider_with_an_axis_askew_is_refused_with_the_angle(frame: str, tmp_path: Path) -> None:
-    (path,) = write_freecad(assembly("slider_crank"), trees=False).write(tmp_path)
+    (path,) = write_freecad(assembly("slider_crank")).write(tmp_path)
     (found,) = read_freecad(with_axis_askew(path, frame, 1.206), metadata=False).mechanism.findings().of("E_LOOP_OPEN")
     assert "1.206° out of parallel" in found.message
     assert "Turn one of the two axes by 1.206°" in str(found.hint)
