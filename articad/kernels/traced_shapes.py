@@ -21,7 +21,7 @@ import build123d as real
 from articad.kernels.part_script import FILE
 from articad.kernels.traced_numbers import plain, traced_math, without_dust
 
-__all__ = ["Node", "NotRecordedError", "Placed", "flat", "recorded_build123d", "solid_node"]
+__all__ = ["NotRecordedError", "TracedOperation", "TracedShape", "flat", "recorded_build123d", "solid_node"]
 
 _math: Final[Any] = traced_math()
 _PASSED: Final = ("Align", "Axis", "Mode", "ShapeList", "Vector")  # used as they are
@@ -57,7 +57,7 @@ class Frame:
     def __mul__(self, other: Any) -> Any:
         if isinstance(other, Frame):
             return self._then(other)
-        if isinstance(other, Placed):
+        if isinstance(other, TracedShape):
             return other.moved(self)
         if isinstance(other, (list, tuple)):
             return [self * item for item in other]
@@ -199,7 +199,7 @@ class PlaneType:
         """Return a plane from its origin and directions."""
         if isinstance(origin, Frame):
             return origin
-        if isinstance(origin, (Placed, Picks)):
+        if isinstance(origin, (TracedShape, Picks)):
             raise _refused("a plane on a face")
         z = _unit(_three(z_dir))
         x = _unit(_three(x_dir)) if x_dir is not None else self._right(z)
@@ -269,12 +269,12 @@ def locations(*places: Any) -> _Places:
 
 
 @dataclass(frozen=True, eq=False)
-class Node:
+class TracedOperation:
     """An operation: its kind, its numbers, its operands with their places, the line that ordered it, and what else it needs."""
 
     kind: str
     numbers: tuple[Any, ...] = ()
-    operands: tuple[tuple[Node, Frame], ...] = ()
+    operands: tuple[tuple[TracedOperation, Frame], ...] = ()
     line: int = 0
     points: tuple[tuple[Any, Any], ...] = ()
     edges: tuple[Any, ...] = ()  # real edges, of a fillet or chamfer
@@ -283,11 +283,11 @@ class Node:
 
 
 @dataclass(eq=False)
-class Placed:
+class TracedShape:
     """A recorded shape: `dimension` 3 for solids, 2 for sketches, 1 for lines; `make` gives the real one without its place."""
 
     dimension: int
-    node: Node
+    node: TracedOperation
     make: Callable[[], Any] = field(repr=False)
     frame: Frame = field(default_factory=Frame)
 
@@ -296,36 +296,36 @@ class Placed:
         """The real shape, of plain numbers."""
         return self.frame.real * self.make()
 
-    def moved(self, frame: Frame) -> Placed:
+    def moved(self, frame: Frame) -> TracedShape:
         """Return the shape moved."""
-        return Placed(self.dimension, self.node, self.make, frame * self.frame)
+        return TracedShape(self.dimension, self.node, self.make, frame * self.frame)
 
-    def translate(self, vector: Any) -> Placed:
+    def translate(self, vector: Any) -> TracedShape:
         """Return the shape shifted."""
         return self.moved(Frame(at=_three(vector)))
 
-    def __add__(self, other: Any) -> Placed:
+    def __add__(self, other: Any) -> TracedShape:
         return self._with("fuse", other, lambda a, b: a + b)
 
-    def __radd__(self, other: Any) -> Placed:
+    def __radd__(self, other: Any) -> TracedShape:
         if other is None or (isinstance(other, (int, list)) and not other):
             return self
         return _fused(other) + self
 
-    def __sub__(self, other: Any) -> Placed:
+    def __sub__(self, other: Any) -> TracedShape:
         return self._with("cut", other, lambda a, b: a - b)
 
-    def __and__(self, other: Any) -> Placed:
+    def __and__(self, other: Any) -> TracedShape:
         return self._with("common", other, lambda a, b: a & b)
 
-    def _with(self, kind: str, other: Any, operation: Callable[[Any, Any], Any]) -> Placed:
+    def _with(self, kind: str, other: Any, operation: Callable[[Any, Any], Any]) -> TracedShape:
         others = list(flat(other))
         if not others:
             return self
         if any(item.dimension != self.dimension for item in others):
             raise _refused("an operation of a solid with a sketch")
-        node = Node(kind, operands=tuple((item.node, item.frame) for item in (self, *others)), line=_line())
-        return Placed(self.dimension, node, lambda: operation(self.real, [item.real for item in others]))
+        node = TracedOperation(kind, operands=tuple((item.node, item.frame) for item in (self, *others)), line=_line())
+        return TracedShape(self.dimension, node, lambda: operation(self.real, [item.real for item in others]))
 
     def edges(self, *args: Any) -> Picks:
         """Return the real edges."""
@@ -350,7 +350,7 @@ class Placed:
 class Picks:
     """Real edges, faces or corners of a recorded shape, as the script selects them."""
 
-    def __init__(self, owner: Placed, held: Any) -> None:
+    def __init__(self, owner: TracedShape, held: Any) -> None:
         self.owner, self.held = owner, held
 
     def _wrapped(self, value: Any) -> Any:
@@ -407,13 +407,13 @@ class Picks:
         return list(self.held) if isinstance(self.held, (list, tuple)) else [self.held]
 
 
-def flat(value: Any) -> Iterator[Placed]:
+def flat(value: Any) -> Iterator[TracedShape]:
     """Yield the recorded shapes of a value: one, or nested lists.
 
     Raises:
         NotRecordedError: If something else is among them.
     """
-    if isinstance(value, Placed):
+    if isinstance(value, TracedShape):
         yield value
     elif isinstance(value, (list, tuple)):
         for item in value:
@@ -422,7 +422,7 @@ def flat(value: Any) -> Iterator[Placed]:
         raise _refused(f"a shape of type {type(value).__name__}")
 
 
-def _fused(value: Any) -> Placed:
+def _fused(value: Any) -> TracedShape:
     shapes = list(flat(value))
     if not shapes:
         raise _refused("a shape without anything")
@@ -448,26 +448,28 @@ _MIDDLE: Final = (real.Align.CENTER,) * 3
 
 def _primitive(
     kind: str, numbers: tuple[Any, ...], low: Sequence[Any], high: Sequence[Any], align: Any, turned: Any, make: Callable[..., Any]
-) -> Placed:
+) -> TracedShape:
     """Record a solid: with its corner or centre where it stands by nature, aligned, then turned."""
     frame = (turned if isinstance(turned, Frame) else rotation(*turned)) * Frame(at=_aligned(align, low, high))
-    node = Node(kind, tuple(numbers), line=_line())
-    return Placed(3, node, lambda: make(*map(plain, numbers), align=None), frame)
+    node = TracedOperation(kind, tuple(numbers), line=_line())
+    return TracedShape(3, node, lambda: make(*map(plain, numbers), align=None), frame)
 
 
-def box(length: Any, width: Any, height: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
+def box(length: Any, width: Any, height: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> TracedShape:
     """Record build123d's `Box`."""
     return _primitive("box", (length, width, height), (0.0, 0.0, 0.0), (length, width, height), align, rotation, real.Box)
 
 
-def cylinder(radius: Any, height: Any, arc_size: Any = 360, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
+def cylinder(radius: Any, height: Any, arc_size: Any = 360, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> TracedShape:
     """Record build123d's `Cylinder`."""
     if arc_size != 360:
         raise _refused("a part of a cylinder")
     return _primitive("cylinder", (radius, height), (None, None, 0.0), (radius, radius, height), align, rotation, real.Cylinder)
 
 
-def cone(bottom_radius: Any, top_radius: Any, height: Any, arc_size: Any = 360, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
+def cone(
+    bottom_radius: Any, top_radius: Any, height: Any, arc_size: Any = 360, rotation: Any = (0, 0, 0), align: Any = _MIDDLE
+) -> TracedShape:
     """Record build123d's `Cone`."""
     if arc_size != 360:
         raise _refused("a part of a cone")
@@ -475,14 +477,14 @@ def cone(bottom_radius: Any, top_radius: Any, height: Any, arc_size: Any = 360, 
     return _primitive("cone", (bottom_radius, top_radius, height), (None, None, 0.0), (wide, wide, height), align, rotation, real.Cone)
 
 
-def sphere(radius: Any, *parts: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
+def sphere(radius: Any, *parts: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> TracedShape:
     """Record build123d's `Sphere`."""
     if parts:
         raise _refused("a part of a sphere")
     return _primitive("sphere", (radius,), (None,) * 3, (radius,) * 3, align, rotation, real.Sphere)
 
 
-def torus(major_radius: Any, minor_radius: Any, *parts: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> Placed:
+def torus(major_radius: Any, minor_radius: Any, *parts: Any, rotation: Any = (0, 0, 0), align: Any = _MIDDLE) -> TracedShape:
     """Record build123d's `Torus`."""
     if parts:
         raise _refused("a part of a torus")
@@ -493,24 +495,24 @@ def torus(major_radius: Any, minor_radius: Any, *parts: Any, rotation: Any = (0,
 # ---------------------------------------------------------------------- sketches
 
 
-def _outline(node: Node, frame: Frame, make: Callable[[], Any]) -> Placed:
-    return Placed(2, node, make, frame)
+def _outline(node: TracedOperation, frame: Frame, make: Callable[[], Any]) -> TracedShape:
+    return TracedShape(2, node, make, frame)
 
 
-def circle(radius: Any, align: Any = (real.Align.CENTER,) * 2) -> Placed:
+def circle(radius: Any, align: Any = (real.Align.CENTER,) * 2) -> TracedShape:
     """Record build123d's `Circle`."""
     x, y = _aligned(align, (None,) * 2, (radius,) * 2)
-    return _outline(Node("circle", (radius,), line=_line()), Frame(at=(x, y, 0.0)), lambda: real.Circle(plain(radius)))
+    return _outline(TracedOperation("circle", (radius,), line=_line()), Frame(at=(x, y, 0.0)), lambda: real.Circle(plain(radius)))
 
 
-def rectangle(width: Any, height: Any, rotation: Any = 0, align: Any = (real.Align.CENTER,) * 2) -> Placed:
+def rectangle(width: Any, height: Any, rotation: Any = 0, align: Any = (real.Align.CENTER,) * 2) -> TracedShape:
     """Record build123d's `Rectangle`."""
     x, y = _aligned(align, (None,) * 2, (width / 2, height / 2))
     frame = _turned(2, rotation) * Frame(at=(x, y, 0.0))
-    return _outline(Node("rectangle", (width, height), line=_line()), frame, lambda: real.Rectangle(plain(width), plain(height)))
+    return _outline(TracedOperation("rectangle", (width, height), line=_line()), frame, lambda: real.Rectangle(plain(width), plain(height)))
 
 
-def polygon(*points: Any, rotation: Any = 0, align: Any = None) -> Placed:
+def polygon(*points: Any, rotation: Any = 0, align: Any = None) -> TracedShape:
     """Record build123d's `Polygon`; its face looks down if the points run clockwise."""
     rows = points[0] if len(points) == 1 and isinstance(points[0], (list, tuple)) and isinstance(points[0][0], (list, tuple)) else points
     held = [_three(point)[:2] for point in rows]
@@ -519,12 +521,12 @@ def polygon(*points: Any, rotation: Any = 0, align: Any = None) -> Placed:
     ends = [(min((point[axis] for point in held), key=plain), max((point[axis] for point in held), key=plain)) for axis in (0, 1)]
     x, y = _aligned(align, *zip(*ends, strict=True))
     frame = _turned(2, rotation) * Frame(at=(x, y, 0.0))
-    return _outline(Node("polygon", points=tuple(held), line=_line()), frame, lambda: real.Polygon(*plain(held), align=None))
+    return _outline(TracedOperation("polygon", points=tuple(held), line=_line()), frame, lambda: real.Polygon(*plain(held), align=None))
 
 
 def regular_polygon(
     radius: Any, side_count: int, major_radius: bool = True, rotation: Any = 0, align: Any = (real.Align.CENTER,) * 2
-) -> Placed:
+) -> TracedShape:
     """Record build123d's `RegularPolygon`."""
     count = plain(side_count)
     reach = radius if major_radius else radius / math.cos(math.pi / count)
@@ -536,21 +538,21 @@ def regular_polygon(
     return polygon(*points, align=align)
 
 
-def slot_center_to_center(center_separation: Any, height: Any, rotation: Any = 0) -> Placed:
+def slot_center_to_center(center_separation: Any, height: Any, rotation: Any = 0) -> TracedShape:
     """Record build123d's `SlotCenterToCenter`: a rectangle and a circle at each of its ends."""
     x, radius = center_separation / 2, height / 2
     made = rectangle(center_separation, height) + [Frame(at=(side * x, 0.0, 0.0)) * circle(radius) for side in (-1, 1)]
     return made.moved(_turned(2, rotation))
 
 
-def slot_overall(width: Any, height: Any, rotation: Any = 0, align: Any = None) -> Placed:
+def slot_overall(width: Any, height: Any, rotation: Any = 0, align: Any = None) -> TracedShape:
     """Record build123d's `SlotOverall`."""
     if align is not None and any(word != real.Align.CENTER for word in (align if isinstance(align, (tuple, list)) else (align,))):
         raise _refused("a slot that is not centred")
     return slot_center_to_center(width - height, height, rotation)
 
 
-def rectangle_rounded(width: Any, height: Any, radius: Any, rotation: Any = 0, align: Any = None) -> Placed:
+def rectangle_rounded(width: Any, height: Any, radius: Any, rotation: Any = 0, align: Any = None) -> TracedShape:
     """Record build123d's `RectangleRounded`: two rectangles and a circle at each corner."""
     if align is not None and any(word != real.Align.CENTER for word in (align if isinstance(align, (tuple, list)) else (align,))):
         raise _refused("a rounded rectangle that is not centred")
@@ -559,13 +561,13 @@ def rectangle_rounded(width: Any, height: Any, radius: Any, rotation: Any = 0, a
     return _fused([rectangle(2 * x, height), rectangle(width, 2 * y), *corners]).moved(_turned(2, rotation))
 
 
-def make_hull(edges: Any) -> Placed:
+def make_hull(edges: Any) -> TracedShape:
     """Record build123d's `make_hull` of circles, rectangles and polygons in one plane.
 
     The hull is the polygon through the points where its straight sides touch, and the circles. The side from circle i to circle j, which
     runs counter-clockwise about both, touches each at the angle φ - acos((r_i - r_j)/|c_j - c_i|), where φ is the direction from c_i to c_j.
     """
-    owners: list[Placed] = []
+    owners: list[TracedShape] = []
     for pick in [edges] if isinstance(edges, Picks) else edges:
         if not isinstance(pick, Picks) or pick.owner.dimension != 2:
             raise _refused("a hull of these edges")
@@ -614,22 +616,22 @@ def _hull_order(rounds: Sequence[Sequence[float]]) -> list[int]:
     return order
 
 
-def _corners(node: Node) -> list[tuple[Any, Any]]:
+def _corners(node: TracedOperation) -> list[tuple[Any, Any]]:
     if node.kind == "polygon":
         return list(node.points)
     x, y = node.numbers[0] / 2, node.numbers[1] / 2
     return [(-x, -y), (x, -y), (x, y), (-x, y)]
 
 
-def polyline(*points: Any, close: bool = False) -> Placed:
+def polyline(*points: Any, close: bool = False) -> TracedShape:
     """Record build123d's `Polyline`."""
     rows = points[0] if len(points) == 1 and isinstance(points[0], (list, tuple)) else points
     held = [_three(point)[:2] for point in rows]
     held += [held[0]] if close else []
-    return Placed(1, Node("line", points=tuple(held), line=_line()), lambda: real.Polyline(*plain(held)))
+    return TracedShape(1, TracedOperation("line", points=tuple(held), line=_line()), lambda: real.Polyline(*plain(held)))
 
 
-def make_face(edges: Any) -> Placed:
+def make_face(edges: Any) -> TracedShape:
     """Record build123d's `make_face` of a closed polyline."""
     lines = list(flat(edges))
     if len(lines) != 1 or lines[0].dimension != 1 or lines[0].node.kind != "line":
@@ -645,7 +647,7 @@ def make_face(edges: Any) -> Placed:
 # ---------------------------------------------------------------------- solids of sketches
 
 
-def extrude(to_extrude: Any = None, amount: Any = None, both: bool = False, **other: Any) -> Placed:
+def extrude(to_extrude: Any = None, amount: Any = None, both: bool = False, **other: Any) -> TracedShape:
     """Record build123d's `extrude` along the normal of a sketch."""
     if amount is None or other or isinstance(to_extrude, Picks):
         raise _refused("this form of extrude")
@@ -657,29 +659,29 @@ def extrude(to_extrude: Any = None, amount: Any = None, both: bool = False, **ot
     if plain(amount) < 0:
         low, high = high, low
     node = _extruded(sketch.node, sketch.frame, (normal.X, normal.Y, normal.Z), low, high, _line())
-    return Placed(3, node, lambda: real.extrude(sketch.real, plain(amount), both=both))
+    return TracedShape(3, node, lambda: real.extrude(sketch.real, plain(amount), both=both))
 
 
-def _extruded(node: Node, frame: Frame, normal: Sequence[float], low: Any, high: Any, line: int) -> Node:
+def _extruded(node: TracedOperation, frame: Frame, normal: Sequence[float], low: Any, high: Any, line: int) -> TracedOperation:
     """Return the solid of an outline between two heights along a normal, as an operation with the place inside."""
     if node.operands:
         held = tuple((_extruded(inner, frame * place, normal, low, high, line), Frame()) for inner, place in node.operands)
-        return Node(node.kind, operands=held, line=line)
+        return TracedOperation(node.kind, operands=held, line=line)
     side = plain(_dot(frame.z_dir, normal))
     if abs(abs(side) - 1.0) > 1e-6:
         raise _refused("an extrusion of outlines in different planes")
     height, start = high - low, low if side > 0 else -high
     if node.kind == "circle":
-        made, place = Node("cylinder", (node.numbers[0], height), line=line), Frame(at=(0.0, 0.0, start))
+        made, place = TracedOperation("cylinder", (node.numbers[0], height), line=line), Frame(at=(0.0, 0.0, start))
     elif node.kind == "rectangle":
         width, depth = node.numbers
-        made, place = Node("box", (width, depth, height), line=line), Frame(at=(-width / 2, -depth / 2, start))
+        made, place = TracedOperation("box", (width, depth, height), line=line), Frame(at=(-width / 2, -depth / 2, start))
     else:
-        made, place = Node("prism", (height,), points=node.points, line=line), Frame(at=(0.0, 0.0, start))
-    return Node("at", operands=((made, frame * place),))
+        made, place = TracedOperation("prism", (height,), points=node.points, line=line), Frame(at=(0.0, 0.0, start))
+    return TracedOperation("at", operands=((made, frame * place),))
 
 
-def revolve(profiles: Any = None, axis: Any = real.Axis.Z, revolution_arc: Any = 360.0) -> Placed:
+def revolve(profiles: Any = None, axis: Any = real.Axis.Z, revolution_arc: Any = 360.0) -> TracedShape:
     """Record build123d's full `revolve` about an axis."""
     sketch = _fused(profiles)
     if revolution_arc != 360 or sketch.dimension != 2:
@@ -687,12 +689,12 @@ def revolve(profiles: Any = None, axis: Any = real.Axis.Z, revolution_arc: Any =
     base, direction = axis.position, axis.direction
     vectors = ((base.X, base.Y, base.Z), (direction.X, direction.Y, direction.Z))
     node = _revolved(sketch.node, sketch.frame, vectors, _line())
-    return Placed(3, node, lambda: real.revolve(sketch.real, axis))
+    return TracedShape(3, node, lambda: real.revolve(sketch.real, axis))
 
 
-def _revolved(node: Node, frame: Frame, vectors: tuple[tuple[Any, ...], ...], line: int) -> Node:
+def _revolved(node: TracedOperation, frame: Frame, vectors: tuple[tuple[Any, ...], ...], line: int) -> TracedOperation:
     if node.operands:
-        return Node(
+        return TracedOperation(
             node.kind,
             operands=tuple((_revolved(inner, frame * place, vectors, line), Frame()) for inner, place in node.operands),
             line=line,
@@ -700,52 +702,54 @@ def _revolved(node: Node, frame: Frame, vectors: tuple[tuple[Any, ...], ...], li
     back = frame.inverse()
     local = (back.apply(vectors[0]), back.direct(vectors[1]))
     kind, numbers, points = ("ring", node.numbers, ()) if node.kind == "circle" else ("revolution", (), tuple(_corners(node)))
-    return Node("at", operands=((Node(kind, numbers, points=points, vectors=local, line=line), frame),))
+    return TracedOperation("at", operands=((TracedOperation(kind, numbers, points=points, vectors=local, line=line), frame),))
 
 
-def loft(sections: Any = None, ruled: bool = False) -> Placed:
+def loft(sections: Any = None, ruled: bool = False) -> TracedShape:
     """Record build123d's ruled `loft` of polygons and rectangles."""
     held = list(flat(sections))
     if not ruled or len(held) < 2 or any(row.dimension != 2 or row.node.kind not in ("polygon", "rectangle") for row in held):
         raise _refused("a loft of anything but polygons with straight faces")
-    sides = tuple((Node("wire", points=tuple(_corners(row.node)), line=row.node.line), row.frame) for row in held)
-    return Placed(3, Node("loft", operands=sides, line=_line(), ruled=True), lambda: real.loft([row.real for row in held], ruled=True))
+    sides = tuple((TracedOperation("wire", points=tuple(_corners(row.node)), line=row.node.line), row.frame) for row in held)
+    return TracedShape(
+        3, TracedOperation("loft", operands=sides, line=_line(), ruled=True), lambda: real.loft([row.real for row in held], ruled=True)
+    )
 
 
-def mirror(objects: Any = None, about: Any = None) -> Placed:
+def mirror(objects: Any = None, about: Any = None) -> TracedShape:
     """Record build123d's `mirror` of a solid about a plane."""
     shape, plane = _fused(objects), about if about is not None else PlaneType().XZ
     if shape.dimension != 3 or not isinstance(plane, Frame):
         raise _refused("a mirror image of anything but a solid about a plane")
-    node = Node("mirror", operands=((shape.node, shape.frame),), vectors=(plane.at, plane.z_dir), line=_line())
+    node = TracedOperation("mirror", operands=((shape.node, shape.frame),), vectors=(plane.at, plane.z_dir), line=_line())
     x, z, o = (tuple(map(plain, row)) for row in (plane.x_dir, plane.z_dir, plane.at))
-    return Placed(3, node, lambda: real.mirror(shape.real, real.Plane(o, x_dir=x, z_dir=z)))
+    return TracedShape(3, node, lambda: real.mirror(shape.real, real.Plane(o, x_dir=x, z_dir=z)))
 
 
-def fillet(objects: Any, radius: Any) -> Placed:
+def fillet(objects: Any, radius: Any) -> TracedShape:
     """Record build123d's `fillet` of edges of a solid."""
     return _dressed("fillet", objects, radius, lambda edges: real.fillet(edges, plain(radius)))
 
 
-def chamfer(objects: Any, length: Any, length2: Any = None, angle: Any = None, reference: Any = None) -> Placed:
+def chamfer(objects: Any, length: Any, length2: Any = None, angle: Any = None, reference: Any = None) -> TracedShape:
     """Record build123d's `chamfer` of edges of a solid, as wide on both sides."""
     if length2 is not None or angle is not None or reference is not None:
         raise _refused("a chamfer with two sizes")
     return _dressed("chamfer", objects, length, lambda edges: real.chamfer(edges, plain(length)))
 
 
-def _dressed(kind: str, objects: Any, size: Any, make: Callable[[Any], Any]) -> Placed:
+def _dressed(kind: str, objects: Any, size: Any, make: Callable[[Any], Any]) -> TracedShape:
     picks = [objects] if isinstance(objects, Picks) else list(objects)
     if not picks or not all(isinstance(pick, Picks) for pick in picks) or any(pick.owner is not picks[0].owner for pick in picks):
         raise _refused(f"a {kind} of these edges")
     owner, edges = picks[0].owner, [edge for pick in picks for edge in pick.each()]
     if owner.dimension != 3 or not all(isinstance(edge, real.Edge) for edge in edges):
         raise _refused(f"a {kind} of corners")
-    node = Node(kind, (size,), ((owner.node, owner.frame),), _line(), edges=tuple(edges))
-    return Placed(3, node, lambda: make(edges))
+    node = TracedOperation(kind, (size,), ((owner.node, owner.frame),), _line(), edges=tuple(edges))
+    return TracedShape(3, node, lambda: make(edges))
 
 
-def solid_node(value: Any) -> Placed:
+def solid_node(value: Any) -> TracedShape:
     """Return the one recorded solid that a script returned.
 
     Raises:
@@ -774,7 +778,7 @@ def recorded_build123d() -> ModuleType:
             continue
         passed = name in _PASSED or not callable(held) or (isinstance(held, type) and issubclass(held, enum.Enum))
         setattr(module, name, recorded.get(name, held if passed else _not_recorded(name)))
-    module.__dict__["__all__"] = [name for name in vars(module) if not name.startswith("_")]
+    module.__dict__["__all__"] = [name for name in real.__all__ if hasattr(module, name)]
     return module
 
 

@@ -20,7 +20,7 @@ from OCP.GProp import GProp_GProps
 from articad.kernels import measure
 from articad.kernels.part_script import FILE, as_object, built, described, plain_connectors
 from articad.kernels.traced_numbers import Formula, formula_of, operands_first, plain, traced, traced_builtins, traced_math
-from articad.kernels.traced_shapes import Frame, Node, NotRecordedError, recorded_build123d, solid_node
+from articad.kernels.traced_shapes import Frame, NotRecordedError, TracedOperation, recorded_build123d, solid_node
 
 __all__ = ["run"]
 
@@ -117,7 +117,7 @@ class _Rows:
         self._places: dict[int, int] = {}  # id of a formula -> its place
         self._kept: list[Formula] = []
 
-    def add(self, node: Node, frame: Frame) -> int:
+    def add(self, node: TracedOperation, frame: Frame) -> int:
         """Add an operation, moved, and return its row."""
         if len(self.rows) >= MAX_ROWS:
             raise NotRecordedError(f"the script performs more than {MAX_ROWS} operations")
@@ -163,7 +163,7 @@ class _Rows:
         return [self._places[id(formula)]]
 
 
-def _chained(node: Node, frame: Frame) -> Iterator[tuple[Node, Frame]]:
+def _chained(node: TracedOperation, frame: Frame) -> Iterator[tuple[TracedOperation, Frame]]:
     """Yield the operands of a union of unions, or of a cut of cuts."""
     (first, place), *others = node.operands
     while first.kind == "at":

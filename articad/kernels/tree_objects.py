@@ -125,6 +125,7 @@ def tree_objects(rows: Any, formulas: Any, dimensions: Mapping[str, float], sour
     writer = _Objects(held, source)
     for place, row in enumerate(rows):
         writer.add(place, row)
+    writer.close()
     return {"objects": writer.objects, "derived": held.derived}
 
 
@@ -147,6 +148,12 @@ class _Objects:
             raise PoisonedError("an operation has the wrong numbers")
         make = self._made_of_operands if kind in _OPERANDS else self._made_of_numbers
         self._places.append(make(kind, [self._places[operand] for operand in operands], numbers, row))
+
+    def close(self) -> None:
+        """Wrap a last object that has a placement: the body that is based on it would ignore the placement."""
+        last = self.objects[-1]
+        if last["placement"] is not None or "Placement" in last["expressions"]:
+            self._object("Part::Compound", "Compound", links={"Links": [len(self.objects) - 1]})
 
     def _made_of_operands(self, kind: str, used: list[int], numbers: list[Any], row: Json) -> int:
         """Add a union, a cut or the like, and return its place."""

@@ -35,7 +35,7 @@ from articad.plan.resolve import ResolvedPart
 
 __all__ = ["PartTree", "part_tree"]
 
-RECIPE: Final = 2  # increased when trees are made or judged differently, so that cached ones are made again
+RECIPE: Final = 3  # increased when trees are made or judged differently, so that cached ones are made again
 SAME: Final = 1e-6  # relative difference of volumes, areas and inertias; of centres in terms of the part's size
 MAX_TREE_BYTES: Final = 64 * 2**20
 _UNITS: Final = {"mm³": "mm3", "mm²": "mm2", "mm": "mm", "mm⁵": "mm5"}

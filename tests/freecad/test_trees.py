@@ -76,6 +76,7 @@ def plan() -> ac.AssemblyPlan:
             "materials": [{"name": "steel", "density_kg_m3": 7850, "color": "#808080"}],
             "parts": [part | {"connectors": [connector]}],
             "joints": [],
+            "freedoms": 0,
         }
     )
 

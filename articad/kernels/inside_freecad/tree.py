@@ -23,7 +23,7 @@ FIRST_ID = 10_000  # beyond 5000, the end of FreeCAD's own random start
 NEAR_MM = 1e-4  # by which the centre of an edge may differ between two kernels that place a seam differently
 
 
-class NoTreeError(Exception):
+class UnmadeTreeError(Exception):
     """The tree cannot be made; the message says why."""
 
 
@@ -33,7 +33,7 @@ def main() -> None:
     report: Json = {"version": list(App.Version()[:3])}
     try:
         report |= _made(job)
-    except NoTreeError as error:
+    except UnmadeTreeError as error:
         report["problem"] = str(error)
     Path("report.json").write_text(json.dumps(report))
 
@@ -101,7 +101,7 @@ def _object(document: Any, row: Json, made: list[Any]) -> Any:
             item.setExpression("Edges", f"list({'; '.join(f'tuple({number}; {size}; {size})' for number in numbers)})")
     document.recompute()
     if "Invalid" in item.State or item.Shape.isNull():
-        raise NoTreeError(f"FreeCAD cannot compute {row['note'] or row['name']}")
+        raise UnmadeTreeError(f"FreeCAD cannot compute {row['note'] or row['name']}")
     return item
 
 
@@ -114,7 +114,7 @@ def _edge(shape: Any, x: float, y: float, z: float, length: float) -> int:
         if edge.CenterOfMass.distanceToPoint(wanted) < NEAR_MM and abs(edge.Length - length) < NEAR_MM
     ]
     if len(near) != 1:
-        raise NoTreeError(f"FreeCAD's solid has {len(near)} edges where the script picks one")
+        raise UnmadeTreeError(f"FreeCAD's solid has {len(near)} edges where the script picks one")
     return near[0]
 
 
