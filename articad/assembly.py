@@ -41,6 +41,7 @@ from articad.kinematics.solution import Solution
 from articad.plan.check import admitted
 from articad.plan.resolve import Fit, Material, ResolvedPart, ResolvedPlan, Waiver
 from articad.plan.schema import AssemblyPlan
+from articad.realisation.meshing import lost_meshes
 from articad.realisation.verdicts import Realisation, check_joints
 
 if TYPE_CHECKING:
@@ -539,13 +540,17 @@ class Assembly:
     def check_joints(self, joints: Sequence[str] | None = None) -> Realisation:
         """Judge how each joint is made: which surfaces of its parts make it, and which freedoms they leave that it should remove.
 
-        Joints are examined at rest and at the ends of their ranges, to first order; nothing is proven between. All findings are warnings.
+        Couplings whose parts touch, such as gears, are sampled over the ranges of the drivers: do these parts stay together? Joints are examined at rest and at the ends of their ranges, to first order; nothing is proven between. All findings are warnings.
 
         Args:
             joints: Names of the joints to judge; all by default.
         """
         poses = Poses(self.mechanism.parts, self.mechanism.at_rest)
-        return check_joints(self.scene(), poses, reached=followed(self.mechanism), joints=joints)
+        scene = self.scene()
+        made = check_joints(scene, poses, reached=followed(self.mechanism), joints=joints)
+        if joints is not None or not self.mechanism.couplings:
+            return made
+        return replace(made, findings=made.findings + Findings(lost_meshes(scene, self.mechanism)))
 
     def certify(
         self,

@@ -1,6 +1,7 @@
 """Evidence: the measurements of an assembly, made before any model is asked how it looks.
 
-First the rest pose; if it has no fault, the declared fits, and each joint through its range with the others at rest. Every verdict says
+First the rest pose; if it has no fault, the declared fits, each joint through its range with the others at rest, and the surfaces that
+make the joints. Every verdict says
 how strong it is, and every finding names its root cause if geometry shows it.
 """
 
@@ -66,7 +67,7 @@ class Known:
 
 
 def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
-    """Check an assembly at rest and, if it has no fault there, its fits and samples of each joint's range.
+    """Check an assembly at rest and, if it has no fault there, its fits, samples of each joint's range, and which surfaces make its joints.
 
     Args:
         assembly: As built.
@@ -81,6 +82,7 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
     if all(finding.stage == "fit" for finding in checks.findings.errors):  # what overlaps at rest overlaps in motion too
         for joint in assembly.mechanism.driving_joints:
             checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
+        checks = replace(checks, findings=checks.findings + assembly.check_joints().findings)
     checks = replace(checks, findings=addressed(diagnose(scene, assembly.mechanism.tree, checks.findings), assembly, scene))
     return Evidence(checks, _sizes(assembly))
 

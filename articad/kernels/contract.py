@@ -22,6 +22,10 @@ from articad.plan.resolve import ResolvedPart
 ENVELOPE_TOLERANCE = 0.02  # of each side: the contract's 2 %
 EMPTY_MM3 = 1e-3  # below this a solid has no volume
 LONGEST_OF_PART = 3.0  # the longest dimension over the diagonal of its part; among 172 sound products the greatest is 1.27
+THICKEST = 2.0  # a thickness over the second longest side of its part
+THINNEST_SHARE = 1.0 / 500.0  # the thickness of a wall over the diagonal of its part, unless it is of metal or stone
+LIGHT = 2000.0  # kg/m³: wood and plastics are lighter
+_THICKNESS = re.compile(r"(?:^|_)(?:thickness|thick|wall|board|sheet)$")
 DRIFT_RADIAL_MM, DRIFT_RADIAL_SHARE = 0.2, 0.002  # drift below the larger of both passes; the share is of the part's diagonal
 DRIFT_ALONG_MM, DRIFT_ALONG_SHARE = 0.5, 0.005
 DRIFT_ANGLE = math.radians(0.25)  # 2.2 mm at a reach of 500 mm
@@ -105,6 +109,7 @@ def dimension_findings(target: ResolvedPart, bbox: FloatArray) -> Iterator[Findi
             unit="mm",
         )
         return
+    yield from _thickness_findings(target, bbox, {name: value for name, value in lengths.items() if name not in long})
     for name, value in long.items():
         yield _finding(
             "W_SCALE",
@@ -116,6 +121,24 @@ def dimension_findings(target: ResolvedPart, bbox: FloatArray) -> Iterator[Findi
             limit=LONGEST_OF_PART * diagonal,
             unit="mm",
         )
+
+
+def _thickness_findings(target: ResolvedPart, bbox: FloatArray, lengths: Mapping[str, float]) -> Iterator[Finding]:
+    """Yield W_SCALE for a thickness that is the longest side of its part by far, and for a wall of wood or plastic like foil."""
+    second, diagonal = float(np.sort(bbox[1] - bbox[0])[1]), float(np.linalg.norm(bbox[1] - bbox[0]))
+    for name, value in lengths.items():
+        if not _THICKNESS.search(name):
+            continue
+        if value > THICKEST * second > 0.0:
+            limit, compared = THICKEST * second, f"its second longest side only {second:.4g} mm"
+            hint = f"Lengths are millimetres: were micrometres given? Then it is {value / 1000.0:.6g}."
+        elif 0.0 < value < THINNEST_SHARE * diagonal and target.material.density < LIGHT:
+            limit, compared = THINNEST_SHARE * diagonal, f"the part is {diagonal:.4g} mm across, of {target.material.name}"
+            hint = f"Make it at least {limit:.2g} mm, or of sheet metal. Were inches given? Then it is {25.4 * value:.4g}."
+        else:
+            continue
+        message = f"Dimension {name!r} of {target.name} is {value:.4g} mm, but {compared}."
+        yield _finding("W_SCALE", target.name, message, hint, dimension=name, value=value, limit=limit, unit="mm")
 
 
 def read_connectors(brief: Json, entries: object, findings: list[Finding]) -> dict[str, Connector]:

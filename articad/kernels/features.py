@@ -1,4 +1,4 @@
-"""Whether a part has the feature that a connector's kind orders: something round about an axis, a face where it is mounted."""
+"""Whether a part has the feature that a connector's kind orders, and whether its bores can be made."""
 
 from __future__ import annotations
 
@@ -15,8 +15,11 @@ from articad.interference.body import winding_numbers
 from articad.kernels.contract import DRIFT_ANGLE, DRIFT_RADIAL_MM
 from articad.realisation.bores import at_height
 
-__all__ = ["feature_findings"]
+__all__ = ["bore_findings", "feature_findings"]
 
+NARROW_MM: Final = 0.5  # printers and common drills make no bore narrower than this
+DEEPEST: Final = 10.0  # its depth over its width
+_CLOSED: Final = 0.05  # sum of normals over the area: 0 for a whole cylinder, 0.64 for a half
 _AXES: Final = frozenset({"bore_axis", "shaft_axis"})
 _NAMES: Final = {"bore_axis": "a bore", "shaft_axis": "a shaft or bore", "mount_face": "a face"}
 
@@ -34,6 +37,32 @@ def feature_findings(part: str, connectors: Mapping[str, Connector], mesh: TriMe
         mesh: Its surface in the same frame [mm].
     """
     return Findings(_findings(part, connectors, mesh))
+
+
+def bore_findings(part: str, mesh: TriMesh) -> Findings:
+    """Return W_BORE_NARROW for a bore that can neither be drilled nor printed: less than half a millimetre wide, and deep.
+
+    Args:
+        part: Its name.
+        mesh: Its surface, in any frame [mm].
+    """
+    found: dict[tuple[float, float], Finding] = {}
+    for face in faces_of(mesh):
+        if face.kind != "cylinder" or not face.hollow or 2 * face.radius >= NARROW_MM:
+            continue
+        depth, width = float(np.ptp(face.corners @ face.axis)), 2 * face.radius
+        if depth > DEEPEST * width and _goes_round(face):
+            found[round(width, 3), round(depth, 1)] = Finding(
+                code="W_BORE_NARROW",
+                where=f"parts.{part}",
+                parts=(part,),
+                message=f"{part} has a bore {width:.3g} mm wide and {depth:.3g} mm deep: it can neither be drilled nor printed.",
+                hint=f"Widen it to at least {NARROW_MM:g} mm, or leave it out. Were inches given? Then it is {25.4 * width:.4g} mm wide.",
+                value=width,
+                limit=NARROW_MM,
+                unit="mm",
+            )
+    return Findings(found.values())
 
 
 def _findings(part: str, connectors: Mapping[str, Connector], mesh: TriMesh) -> Iterator[Finding]:
@@ -62,6 +91,12 @@ def _is_round(face: Face) -> bool:
         return _is_upright(face) and float(np.linalg.norm(at_height(face, 0.0))) < DRIFT_RADIAL_MM
     points = face.corners.reshape(-1, 3)[:, :2]
     return face.kind == "other" and bool((points.min(axis=0) <= 0.0).all() and (points.max(axis=0) >= 0.0).all())
+
+
+def _goes_round(face: Face) -> bool:
+    """Return whether a cylinder is closed: its normals cancel, those of a fillet do not."""
+    normals = np.cross(face.corners[:, 1] - face.corners[:, 0], face.corners[:, 2] - face.corners[:, 0])
+    return float(np.linalg.norm(normals.sum(axis=0))) < _CLOSED * float(np.linalg.norm(normals, axis=1).sum())
 
 
 def _is_upright(face: Face) -> bool:

@@ -20,7 +20,7 @@ from articad.findings import Finding, Findings
 from articad.geometry.part import Part, Solid
 from articad.kernels.cache import BuildCache
 from articad.kernels.contract import dimension_findings, drift_findings, primary_connector, seating
-from articad.kernels.features import feature_findings
+from articad.kernels.features import bore_findings, feature_findings
 from articad.kernels.results import read_mesh
 from articad.plan.brief import brief, brief_digest, build_digest
 from articad.plan.resolve import ResolvedPart, ResolvedPlan
@@ -186,7 +186,8 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
 
     Returns:
         The part, and the findings that `built.findings` does not already contain: `E_CONNECTOR_DRIFT` if drift exceeds the bounds,
-        `W_CONNECTOR_FEATURE` if a connector's kind orders a feature that is not there, `W_SCALE` for a dimension far longer than the part.
+        `W_CONNECTOR_FEATURE` if a connector's kind orders a feature that is not there, `W_BORE_NARROW` for a bore that cannot be made,
+        `W_SCALE` for a dimension far longer than the part, or a thickness out of proportion.
     """
     T = seating(resolved_part, built.connectors, primary_connector(resolved_part, built.brief))
     solid = built.solid if T.allclose(SE3.identity(), mm=SEATED_MM, rad=SEATED_RAD) else built.solid.moved(T)
@@ -200,9 +201,9 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
     )
     known = {(finding.code, finding.where) for finding in built.findings}
     drift = drift_findings(resolved_part, built.brief, built.connectors, built.solid.bbox)
-    found = (
-        drift + feature_findings(resolved_part.name, resolved_part.connectors, solid.mesh) + dimension_findings(resolved_part, solid.bbox)
-    )
+    name = resolved_part.name
+    features = feature_findings(name, resolved_part.connectors, solid.mesh) + bore_findings(name, solid.mesh)
+    found = drift + features + dimension_findings(resolved_part, solid.bbox)
     return part, Findings(finding for finding in found if (finding.code, finding.where) not in known)
 
 

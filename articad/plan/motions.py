@@ -15,6 +15,8 @@ from articad.plan.joint_forms import Contact
 from articad.plan.schema import BallSpec, FitSpec, JointForm, JointSpec, ScrewSpec
 
 TWO_TURNS = 720.0  # degrees beyond which a limit of a turning joint is hardly intended; screws turn more
+_STEP_DEG, _TYPED_DEG = 15.0, 0.05  # people choose angles in such steps; radians are typed with three or four decimals
+_EVEN_DEG = 1e-6  # of half degrees
 RADIANS_UP_TO = 6.3  # a full turn in radians is 6.283: limits that are all smaller look like radians
 _SLACK = 1e-9  # degrees or mm: a rest value computed to be at its limit is at its limit
 HALF_TURN = 180.0
@@ -163,13 +165,20 @@ def _check_degrees(limits: Sequence[float], path: str, evaluation: Evaluation, *
         message = f"Limits {shown} exceed two turns."
         hint = 'Give degrees within [-720, 720], or "endless" if the joint turns freely.'
         evaluation.report("W_LIMITS_UNITS", path, message, hint, value=largest, limit=TWO_TURNS, unit="deg")
-    elif 0.0 < largest <= RADIANS_UP_TO and any(size != int(size) for size in sizes):
+    elif 0.0 < largest <= RADIANS_UP_TO and any(size != int(size) for size in sizes) or (sizes and all(map(_is_round_in_radians, sizes))):
         degrees = [round(math.degrees(limit), 3) + 0.0 for limit in limits]
         meant = f"[{', '.join(f'{limit:g}' for limit in degrees)}]" if len(limits) > 1 else f"{degrees[0]:g}"
         message = f"{shown} looks like radians; degrees are expected."
         evaluation.report(
             "W_LIMITS_UNITS", path, message, f"If radians were meant, give {meant}.", value=largest, limit=RADIANS_UP_TO, unit="deg"
         )
+
+
+def _is_round_in_radians(size: float) -> bool:
+    """Return whether an angle is uneven in degrees, but a multiple of 15° if it was given in radians, such as 62.83: ten turns."""
+    meant = math.degrees(size)
+    is_even = abs(size * 2 - round(size * 2)) < _EVEN_DEG
+    return not is_even and abs(meant - _STEP_DEG * round(meant / _STEP_DEG)) < _TYPED_DEG
 
 
 def _ball_limits(form: BallSpec, where: str, evaluation: Evaluation) -> JointLimits | None:

@@ -156,17 +156,34 @@ def _made(kind: Kind, product: Product, site: Site) -> Fault:
 
 _OBEDIENT: Final = """
 
-_by_dimensions = build
+_as_before = build
+_PLACES = {places}
 
 
 def build(part):
-    shape, connectors = _by_dimensions(part)
-    return shape, {**connectors, **part.connectors}
+    shape, connectors = _as_before(part)
+    connectors = dict(connectors)
+    for name, place in _PLACES.items():
+        ordered, built = part.connectors[name], connectors[name]
+        if isinstance(built, dict):  # else it is the entry of the plan
+            moved = tuple(at + new - old for at, new, old in zip(built["o"], ordered.o, place))
+            connectors[name] = {{"o": moved, "z": ordered.z, "x": ordered.x}}
+    return shape, connectors
 """
 
 
 def _obedient(product: Product, plan: Json) -> Mapping[str, str]:
-    """Return the scripts of authors who follow a faulty plan: parts with another entry have their connectors where it orders them."""
+    """Return the scripts of authors who follow a faulty plan: connectors of another place or direction are moved as the plan moves them.
+
+    Their places still follow the dimensions.
+    """
     before = {part["name"]: part for part in product.plan["parts"]}
-    changed = {part["name"] for part in plan["parts"] if part.get("connectors") != before.get(part["name"], part).get("connectors")}
-    return {name: text + _OBEDIENT if name in changed and "freecad" not in text else text for name, text in product.scripts.items()}
+    scripts = dict(product.scripts)
+    for part in plan["parts"]:
+        old = {entry["name"]: entry for entry in before.get(part["name"], part).get("connectors", ())}
+        changed = [entry["name"] for entry in part.get("connectors", ()) if entry != old.get(entry["name"], entry)]
+        name = part["name"]
+        if changed and "freecad" not in scripts[name]:
+            own = product.resolved.parts[name].connectors
+            scripts[name] += _OBEDIENT.format(places={one: tuple(own[one].frame.translation.tolist()) for one in changed})
+    return scripts

@@ -15,6 +15,7 @@ def build(part):
         for y in (40, d["depth"] - 40):
             body -= Pos(x * (d["width"] / 2 - 40), y, -1) * Cylinder(d["foot_radius"] + d["clearance"], d["wall"] + 2, align=LOW)
     body -= Pos(d["width"] / 2 - 60, -1, d["height"] - 28) * Rot(X=-90) * Cylinder(d["lock_radius"] + d["clearance"], 25, align=LOW)
+    body -= Pos(d["width"] / 2 - 60, 9.7, d["height"] - 28) * Rot(X=-90) * Cylinder(d["lock_radius"] + d["clearance"] + 2, 3.6, align=LOW)
 
     return body, {
         "drawer_0": {"o": (0, 0, d["wall"] + d["play"] + 0 * d["pitch"]), "z": (0, -1, 0), "x": (1, 0, 0)},

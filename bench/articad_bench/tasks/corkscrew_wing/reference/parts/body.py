@@ -18,6 +18,7 @@ def build(part):
             )
         body += Pos(x * d["pin_x"], 0, d["pin_z"]) * Rot(X=90) * Cylinder(d["pin"], d["wing_thick"] + 8)
     body -= Cylinder(d["bore"] + d["clearance"], 300)
+    body += Pos(0, d["bore"] - 1.4, 35) * Box(2.6, 4, 30, align=(Align.CENTER, Align.MIN, Align.MIN))  # key
 
     return body, {
         "spindle": {"o": (0, 0, 0), "z": (0, 0, -1), "x": (1, 0, 0)},

@@ -1,4 +1,4 @@
-from build123d import Align, Cylinder, Pos
+from build123d import Align, Box, Cylinder, Pos
 
 LOW = (Align.CENTER, Align.CENTER, Align.MIN)
 
@@ -8,6 +8,7 @@ def build(part):
     body = Cylinder(d["bore"], d["length"], align=LOW) - Cylinder(d["shaft"] + d["clearance"], 300)
     for i in range(8):
         body -= Pos(0, 0, 55 + 4 * i) * (Cylinder(d["bore"] + 2, 2, align=LOW) - Cylinder(d["bore"] - 1, 2, align=LOW))
+    body -= Pos(0, d["bore"] - 2, -1) * Box(3, 4, 130, align=(Align.CENTER, Align.MIN, Align.MIN))  # keyway
 
     return body, {
         "spindle": {"o": (0, 0, -20), "z": (0, 0, -1), "x": (1, 0, 0)},

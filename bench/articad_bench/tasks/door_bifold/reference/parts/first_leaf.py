@@ -14,6 +14,7 @@ def build(part):
         + Cylinder(d["pin"], 74, align=HIGH)
         - Pos(0, 0, -24) * Cylinder(40, 60, align=HIGH)
     )
+    body += Pos(0, 0, 0.3) * Cylinder(12, 10, align=LOW)  # carries the leaf on the sill
     body += Pos(0, 0, d["leaf_height"] - 50) * (
         Box(d["start"] + 5, 16, 60, align=LEFT_LOW) + Cylinder(12, 60, align=LOW) + Cylinder(d["pin"], 84, align=LOW)
     )

@@ -15,6 +15,7 @@ def build(part):
         Cylinder(12, 60, align=LOW)
         + Pos(-d["start"] - 5, 0, 0) * Box(d["start"] + 5, 16, 60, align=LEFT_LOW)
         + Cylinder(d["pin"], 84, align=LOW)
+        + Cylinder(9, d["lintel_z"] + 50.7 - d["leaf_height"], align=LOW)  # carries the shoe
     )
 
     return body, {
