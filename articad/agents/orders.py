@@ -1,29 +1,31 @@
 """Who made a fault between parts: a script that departs from its order, or the plan that ordered it.
 
-Decided by proof, from the round surfaces about the axes of joints and from the probe of dimensions. A script departs if a dimension of its
-part has no effect, or if a bore or pin about a joint's axis has a diameter that none of its dimensions states. What else is wrong about
+Decided by proof, from the bores, pins, sockets and balls of joints and from the probe of dimensions. A script departs if a dimension of its
+part has no effect, if it alone has nothing round about the axis of a joint or has its bore or pin beside it, if a bore or pin that makes a joint has a diameter that none
+of its dimensions states, or if such a bore is closed at a depth that they do not give. What else is wrong about
 such a part may follow from that, so it waits for the script. A hole or slot that is absent from a script that follows its order was not
 ordered: the plan is wrong. It is wrong as well if a fit is off by just what both surfaces differ, and both have the diameters that were
-ordered. Everything else stays open.
+ordered. All faults of two parts go to the same author. Everything else stays open.
 """
 
 from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.geometry.faces import Face
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.resolve import ResolvedPlan
-from articad.realisation.bores import TILT, along, at_height
+from articad.realisation.bores import TILT
 from articad.realisation.sides import sides
 
 __all__ = ["addressed", "source_of"]
@@ -31,21 +33,37 @@ __all__ = ["addressed", "source_of"]
 _FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
 _CODES: Final = _FITS | {"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FLOATING", "E_NOT_TOUCHING"}
 _CUT: Final = frozenset({"unbored_hole", "missing_slot"})  # causes that a cut mends: one that was ordered, or one that must be
-_ROUND: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
-_ON_AXIS_MM: Final = 0.2  # a surface whose axis is farther away is not about the joint's axis
+_ABOUT_AXIS: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
+_ON_AXIS_MM: Final = 0.2  # a pin whose axis is farther away from that of a bore was not made for it
+_BESIDE: Final = 2.0  # distance from the joint's axis over the diameter: farther away, it is the bore of another joint
 _ALIKE: Final = 0.3  # difference of radii, as a share of the larger
 _ROUNDING_MM: Final = 0.005  # of a diameter
 _PLAY_MM: Final = 0.02  # difference of a measured gap and that of the surfaces
+_WORDS: Final = {"cylinder": ("bore", "pin"), "sphere": ("socket", "ball")}
 _CLEARANCE: Final = re.compile(r"clearance|play|gap|slack|tolerance|allowance")
 
 
 class _Round(NamedTuple):
-    """A cylinder about a joint's axis: its part, diameter and error [mm], and whether it is a bore."""
+    """A cylinder or sphere that makes a joint.
+
+    Attributes:
+        part: Its part.
+        what: "bore", "pin", "socket" or "ball".
+        diameter: Its diameter [mm].
+        off: Error of its radius [mm].
+        depth: Of a bore that is closed at one end [mm], else None.
+    """
 
     part: str
+    what: str
     diameter: float
     off: float
-    hollow: bool
+    depth: float | None
+
+    @property
+    def hollow(self) -> bool:
+        """Whether it goes around the other."""
+        return self.what in ("bore", "socket")
 
 
 def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene) -> Findings:
@@ -57,13 +75,18 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene) -> 
         scene: The assembly's scene.
     """
     several = tuple(findings)
+    between = {f"joints.{joint.name}": (joint.parent, joint.child) for joint in assembly.joints}
     pairs = {frozenset(finding.parts) for finding in several if finding.code in _CODES and len(finding.parts) == 2}
     if assembly.resolved is None or not pairs:
         return Findings(several)
-    joints = [joint for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs and joint.type in _ROUND]
+    joints = [joint for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
     surfaces = {joint.name: _mating(scene, joint) for joint in joints}
-    departed = _departed(assembly, assembly.resolved, set().union(*pairs), surfaces)
-    return Findings(_addressed(finding, assembly.resolved, departed, joints, surfaces) for finding in several)
+    departed = _departed(assembly, assembly.resolved, scene, joints, surfaces)
+    ordered = {frozenset({joint.parent, joint.child}) for joint in joints if any(_explains(surfaces[joint.name], one) for one in several)}
+    ordered |= {frozenset(finding.parts) for finding in several if finding.cause in _CUT}
+    return Findings(
+        _addressed(finding, between.get(finding.where, finding.parts), assembly.resolved, departed, ordered) for finding in several
+    )
 
 
 def source_of(name: str, resolved: ResolvedPlan) -> str:
@@ -73,36 +96,43 @@ def source_of(name: str, resolved: ResolvedPlan) -> str:
     return name
 
 
-def _departed(assembly: Assembly, resolved: ResolvedPlan, parts: Iterable[str], surfaces: Mapping[str, Sequence[_Round]]) -> dict[str, str]:
+def _departed(
+    assembly: Assembly, resolved: ResolvedPlan, scene: Scene, joints: Sequence[Joint], surfaces: Mapping[str, Sequence[_Round]]
+) -> dict[str, str]:
     """Return why scripts depart from their orders, by the part that has the script."""
     found: dict[str, str] = {}
-    for source in sorted({source_of(name, resolved) for name in parts}):
+    for source in sorted({source_of(name, resolved) for joint in joints for name in (joint.parent, joint.child)}):
         unused = assembly.realised[source].findings.of("W_DIMENSION_UNUSED")
         if unused:
             found[source] = f"{source} does not follow its dimension {unused[0].where.rsplit('.', 1)[-1]!r}."
-    for joint, round_ones in surfaces.items():
-        for one in round_ones:
+    for joint in joints:
+        for part, reason in _elsewhere(scene, joint) if not surfaces[joint.name] else ():
+            source = source_of(part, resolved)
+            found.setdefault(source, f"{source} {reason} the axis of joint {joint.name!r}.")
+        for one in surfaces[joint.name]:
             source = source_of(one.part, resolved)
-            if not _is_stated(one, resolved.parts[source].dimensions):
-                what = "bore" if one.hollow else "pin"
-                found.setdefault(
-                    source,
-                    f"The {what} of {source} about the axis of {joint!r} has a diameter of {one.diameter:.4g} mm, "
-                    "which none of its dimensions states.",
-                )
+            dimensions = resolved.parts[source].dimensions
+            which = f"The {one.what} of {source} in joint {joint.name!r}"
+            if not _is_stated(one, dimensions):
+                reason = f"{which} has a diameter of {one.diameter:.4g} mm, which none of its dimensions states."
+            elif one.depth is not None and not _is_given(one.depth, dimensions):
+                reason = f"{which} is {one.depth:.4g} mm deep, which its dimensions do not give."
+            else:
+                continue
+            found.setdefault(source, reason)
     return found
 
 
 def _addressed(
     finding: Finding,
+    parts: Sequence[str],
     resolved: ResolvedPlan,
     departed: Mapping[str, str],
-    joints: Iterable[Joint],
-    surfaces: Mapping[str, Sequence[_Round]],
+    ordered: Container[frozenset[str]],
 ) -> Finding:
     if finding.code not in _CODES:
         return finding
-    guilty = [source for name in finding.parts if (source := source_of(name, resolved)) in departed]
+    guilty = [source for name in parts if (source := source_of(name, resolved)) in departed]
     if guilty:
         is_named = finding.route == "code" and finding.where == f"parts.{guilty[0]}"
         more = finding.hint if is_named else f"Build {guilty[0]} as its specification states."
@@ -111,43 +141,114 @@ def _addressed(
         culprit = finding.where.removeprefix("parts.")
         follows = f"As far as it can be measured, the script of {culprit} follows its order, so the order is at fault"
         return replace(finding, route="design", hint=f"{follows}: {finding.hint[0].lower()}{finding.hint[1:]}")
-    between = [joint.name for joint in joints if {joint.parent, joint.child} == set(finding.parts)]
-    if finding.code in _FITS and any(_explains(surfaces[name], finding) for name in between):
-        return replace(finding, route="design")
-    return finding
+    return replace(finding, route="design") if frozenset(parts) in ordered else finding
 
 
 def _explains(surfaces: Sequence[_Round], finding: Finding) -> bool:
-    """Return whether a gap is what a bore and its pin differ by."""
-    plays = [(bore.diameter - pin.diameter) / 2 for bore, pin in itertools.product(surfaces, surfaces) if bore.hollow and not pin.hollow]
-    return finding.value is not None and any(abs(finding.value - play) < _PLAY_MM for play in plays)
+    """Return whether a fit is off by what a bore and its pin differ by, or because the pin is the thicker one."""
+    if finding.code not in _FITS or {one.part for one in surfaces}.isdisjoint(finding.parts):
+        return False
+    plays = [(bore.diameter - pin.diameter) / 2 for bore, pin in zip(surfaces[::2], surfaces[1::2], strict=True)]
+    return any(play < 0.0 or (finding.value is not None and abs(finding.value - play) < _PLAY_MM) for play in plays)
 
 
 def _mating(scene: Scene, joint: Joint) -> list[_Round]:
-    """Return the bores and pins about a joint's axis, one on each side of it, that meet along it and are nearly equal in size."""
-    both = [[(one.part, one.face) for one in side if _is_about(one.face)] for side in sides(scene, joint)]
+    """Return the bores with their pins and the sockets with their balls, one on each side of a joint, nearly equal in size."""
+    both = sides(scene, joint)
     found = []
-    for one, other in ((both[0], both[1]), (both[1], both[0])):
-        for part, bore in one:
-            for against, pin in other:
-                (low, high), (start, end) = along(bore), along(pin)
-                alike = abs(bore.radius - pin.radius) <= _ALIKE * max(bore.radius, pin.radius)
-                if bore.hollow and not pin.hollow and alike and min(high, end) > max(low, start):
-                    found += [_Round(part, 2 * bore.radius, bore.off, hollow=True), _Round(against, 2 * pin.radius, pin.off, hollow=False)]
+    for one, other in ((both.parent, both.child), (both.child, both.parent)):
+        bores = [each for each in one if each.face.kind in _WORDS and each.face.hollow]
+        pins = [each for each in other if each.face.kind in _WORDS and not each.face.hollow]
+        for (part, bore), (against, pin) in itertools.product(bores, pins):
+            if abs(bore.radius - pin.radius) <= _ALIKE * max(bore.radius, pin.radius) and _goes_into(pin, bore):
+                words = _WORDS[bore.kind]
+                depth = _depth(bore, [each.face for each in one if each.part == part])
+                found.append(_Round(part, words[0], 2 * bore.radius, bore.off, depth))
+                found.append(_Round(against, words[1], 2 * pin.radius, pin.off, None))
     return found
 
 
+def _elsewhere(scene: Scene, joint: Joint) -> Iterator[tuple[str, str]]:
+    """Yield the part of a joint about an axis that has nothing round about it, or its bore or pin beside it, and which of these."""
+    if joint.type not in _ABOUT_AXIS:
+        return
+    both = sides(scene, joint)
+    several = ((joint.parent, both.parent, both.child), (joint.child, both.child, both.parent))
+    bare = [part for part, own, _ in several if not any(_is_about(one.face) for one in own)]
+    if len(bare) == 1:
+        yield bare[0], "has no bore or pin about"
+        return
+    for part, own, other in several:
+        about = [one.face for one in other if one.face.kind == "cylinder" and _is_about(one.face)]
+        for face in (one.face for one in own if one.part == part and one.face.kind == "cylinder" and not _is_about(one.face)):
+            beside = float(np.linalg.norm(np.cross(face.point, face.axis)))
+            if (
+                np.hypot(face.axis[0], face.axis[1]) < TILT
+                and beside < _BESIDE * 2 * face.radius
+                and any(_suits(face, one) for one in about)
+            ):
+                yield part, f"has its {_WORDS['cylinder'][not face.hollow]} of {2 * face.radius:.4g} mm {beside:.3g} mm beside"
+                return
+
+
+def _suits(face: Face, other: Face) -> bool:
+    """Return whether one of two cylinders about parallel axes is a bore and the other a pin that is a little thinner."""
+    bore, pin = (face, other) if face.hollow else (other, face)
+    return bore.hollow and not pin.hollow and 0.0 <= bore.radius - pin.radius <= _ALIKE * bore.radius
+
+
 def _is_about(face: Face) -> bool:
-    """Return whether a face is a cylinder about the z axis."""
+    """Return whether a face is a cylinder about the z axis, or a curved face whose kind is not known."""
+    if face.kind == "other":
+        return True
     if face.kind != "cylinder" or np.hypot(face.axis[0], face.axis[1]) > TILT:
         return False
-    return float(np.linalg.norm(at_height(face, sum(along(face)) / 2))) < _ON_AXIS_MM
+    return float(np.linalg.norm(np.cross(face.point, face.axis))) < _ON_AXIS_MM
+
+
+def _goes_into(pin: Face, bore: Face) -> bool:
+    """Return whether two faces of one kind have the same centre, or the same axis and a common extent along it."""
+    if pin.kind != bore.kind:
+        return False
+    between = bore.point - pin.point
+    if pin.kind == "sphere":
+        return float(np.linalg.norm(between)) < _ON_AXIS_MM
+    if np.linalg.norm(np.cross(pin.axis, bore.axis)) > TILT or np.linalg.norm(np.cross(between, bore.axis)) > _ON_AXIS_MM:
+        return False
+    (low, high), (start, end) = (_extent(face, bore.axis) for face in (bore, pin))
+    return min(high, end) > max(low, start)
+
+
+def _extent(face: Face, axis: FloatArray) -> tuple[float, float]:
+    heights = face.corners @ axis
+    return float(heights.min()), float(heights.max())
+
+
+def _depth(bore: Face, faces: Iterable[Face]) -> float | None:
+    """Return the depth of a bore that a floor closes at one end [mm], else None."""
+    if bore.kind != "cylinder":
+        return None
+    low, high = _extent(bore, bore.axis)
+    for face in faces:
+        if face.kind == "plane" and np.linalg.norm(np.cross(face.axis, bore.axis)) < TILT:
+            height = float(face.point @ bore.axis)
+            reach = np.linalg.norm(np.cross(face.corners.reshape(-1, 3) - bore.point, bore.axis), axis=1).max()
+            if min(abs(height - low), abs(height - high)) < _ROUNDING_MM and reach < bore.radius + _ROUNDING_MM:
+                return high - low
+    return None
 
 
 def _is_stated(surface: _Round, dimensions: Mapping[str, float]) -> bool:
     """Return whether a diameter is that of a dimension, taken as diameter or radius, with or without a clearance."""
     allowed = 2 * surface.off + _ROUNDING_MM
     return any(abs(surface.diameter - stated) <= allowed for stated in _diameters(dimensions))
+
+
+def _is_given(length: float, dimensions: Mapping[str, float]) -> bool:
+    """Return whether a length is that of a dimension, or the sum or difference of two."""
+    stated = np.array([value for name, value in dimensions.items() if not name.endswith(("_deg", "_count"))], dtype=np.float64)
+    terms = np.concatenate([[0.0], stated, -stated])
+    return bool((np.abs(terms[:, None] + terms - length) < _ROUNDING_MM).any())
 
 
 def _diameters(dimensions: Mapping[str, float]) -> Iterator[float]:

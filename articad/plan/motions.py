@@ -165,7 +165,7 @@ def _check_degrees(limits: Sequence[float], path: str, evaluation: Evaluation, *
         message = f"Limits {shown} exceed two turns."
         hint = 'Give degrees within [-720, 720], or "endless" if the joint turns freely.'
         evaluation.report("W_LIMITS_UNITS", path, message, hint, value=largest, limit=TWO_TURNS, unit="deg")
-    elif 0.0 < largest <= RADIANS_UP_TO and any(size != int(size) for size in sizes) or (sizes and all(map(_is_round_in_radians, sizes))):
+    elif (0.0 < largest <= RADIANS_UP_TO and any(size != int(size) for size in sizes)) or (sizes and all(map(_is_round_in_radians, sizes))):
         degrees = [round(math.degrees(limit), 3) + 0.0 for limit in limits]
         meant = f"[{', '.join(f'{limit:g}' for limit in degrees)}]" if len(limits) > 1 else f"{degrees[0]:g}"
         message = f"{shown} looks like radians; degrees are expected."

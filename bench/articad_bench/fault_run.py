@@ -70,7 +70,7 @@ class FaultRun:
             if row is None or row.case != fault.name:
                 row = rows[fault.digest] = tried(fault, tools)
                 self._save(out, rows, {})
-            tell(fault.name, "same" if row.equivalent else "escaped" if row.escaped else row.stage)
+            tell(fault.name, "same" if row.equivalent else "valid" if row.valid else "escaped" if row.escaped else row.stage)
         alarms = {product.name: [str(one) for one in examined(product, tools).findings] for product in self.products}
         return self._save(out, rows, alarms)
 

@@ -24,15 +24,18 @@ place drawn with a fixed seed. [The how-to](../how-to/benchmark.md#plant-faults)
 - **found in**: the step that found something: the check of the *plan*, the *build* with the contract of each part, the *evidence* (overlaps and fits at rest,
   samples of each joint's range), or the full *sampled* check of `articad build --verify sampled`. An error ends the trial, as does a warning that a run sends back to its author; the *sampled* check follows if nothing was found before.
 - **same**: nothing is found because the product is the same: parts, masses, places at rest and in motion, limits, couplings and fits. Such cases are not counted.
+- **valid**: nothing is found about a faulty plan, and the product holds every check of its task, so that it is another answer to the same request. Such cases
+  are not counted either; they are listed below.
 - **escaped**: no error and no warning, although the product is another one.
 - **named**: a finding names a part or joint of the mistake, and its code is one of those that state this cause. An escape is not named.
 - **addressed**: all such findings of the highest severity go to whoever made the mistake, the author of the plan or of this script, without a model deciding it.
+  Where a plan orders connectors or boxes elsewhere than the scripts build the features, a script departs from its order as well: either author is right.
 """
 
 
 def rows_of(stored: Mapping[str, Any]) -> list[Row]:
     """Return the rows of a stored report."""
-    return [Row(**{**row, "held": tuple(row["held"]), "findings": tuple(map(tuple, row["findings"]))}) for row in stored["rows"]]
+    return [Row(**{**row, "findings": tuple(map(tuple, row["findings"]))}) for row in stored["rows"]]
 
 
 def report(rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned: int) -> dict[str, Any]:
@@ -59,8 +62,8 @@ def report(rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned:
 
 
 def _counts(rows: Sequence[Row]) -> dict[str, int]:
-    counted = [row for row in rows if not row.equivalent]
-    counts = {"cases": len(counted), "same": len(rows) - len(counted)}
+    counted = [row for row in rows if row.counts]
+    counts = {"cases": len(counted), "same": sum(row.equivalent for row in rows), "valid": sum(row.valid for row in rows)}
     counts |= {name: sum(row.stage == name for row in counted) for name in _STAGES}
     return counts | {name: sum(getattr(row, name) for row in counted) for name in ("escaped", "named", "addressed")}
 
@@ -80,7 +83,7 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
         kinds: All kinds, in the order of the table.
     """
     rows = rows_of(told)
-    heads = ("", "cases", "same", *_STAGES, "escaped", "named", "addressed")
+    heads = ("", "cases", "same", "valid", *_STAGES, "escaped", "named", "addressed")
     lines = [
         _ABOUT,
         f"{len(rows)} of {told['planned']} cases were tried.",
@@ -95,22 +98,20 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
         of_side = [(kind, [row for row in rows if row.kind == kind.name]) for kind in kinds if kind.side == side]
         lines += ["", f"## {title}", ""]
         lines += _table(heads, [_line(f"`{kind.name}`: {kind.meaning}", _counts(mine)) for kind, mine in of_side if mine])
-    escapes = [(f"`{row.case}`", row.said, ", ".join(row.held)) for row in rows if row.escaped]
     lines += [
         "## Escapes",
         "",
-        "No error and no warning: a check is missing, or the mistake makes another product that is possible. *joints*: what `articad check --joints` adds.",
+        "No error and no warning: a check is missing, or the mistake makes another product that is possible.",
         "",
     ]
-    lines += _table(("case", "mistake", "joints"), escapes)
+    lines += _table(("case", "mistake"), [(f"`{row.case}`", row.said) for row in rows if row.escaped])
+    lines += ["## Other valid answers", "", *_table(("case", "mistake"), [(f"`{row.case}`", row.said) for row in rows if row.valid])]
     elsewhere = [(f"`{row.case}`", row.said, _first(row)) for row in rows if row.named and not row.addressed]
     lines += ["## Named, but addressed to another", "", *_table(("case", "mistake", "first finding"), elsewhere)]
     defects = [(f"`{row.case}`", row.said, row.findings[0][3]) for row in rows if row.stage == "defect"]
     lines += ["## Defects of articad", "", *_table(("case", "mistake", "exception"), defects)]
     unnamed = [
-        (f"`{row.case}`", row.said, _first(row))
-        for row in rows
-        if not (row.named or row.escaped or row.equivalent or row.stage == "defect")
+        (f"`{row.case}`", row.said, _first(row)) for row in rows if row.counts and not (row.named or row.escaped or row.stage == "defect")
     ]
     lines += ["## Found, but not named", "", *_table(("case", "mistake", "first finding"), unnamed)]
     return "\n".join(lines).rstrip() + "\n"
@@ -122,7 +123,7 @@ def _first(row: Row) -> str:
 
 
 def _line(name: str, counts: Mapping[str, int]) -> tuple[str, ...]:
-    keys = ("cases", "same", *_STAGES, "escaped", "named", "addressed")
+    keys = ("cases", "same", "valid", *_STAGES, "escaped", "named", "addressed")
     return (name, *(str(counts[key] or "") for key in keys))
 
 

@@ -28,6 +28,9 @@ from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad_bench.faulty import Fault, Product
+from articad_bench.reference import reference_folder
+from articad_bench.subject import Subject
+from articad_bench.task import tasks_in
 
 __all__ = ["Row", "Tools", "Trial", "examined", "tried"]
 
@@ -83,7 +86,8 @@ class Row:
         equivalent: Nothing was found because the product is the same: parts, places, masses, limits.
         named: A finding names a part or joint of the mistake, with a code that states its cause.
         addressed: Every such finding of the highest severity goes to whoever made the mistake.
-        held: For an escape: codes that `articad check --joints` finds beside those of the good product.
+        valid: Nothing was found about a faulty plan, and the product holds every check of its task: it is another answer to the same
+            request.
     """
 
     case: str
@@ -98,7 +102,12 @@ class Row:
     equivalent: bool = False
     named: bool = False
     addressed: bool = False
-    held: tuple[str, ...] = ()
+    valid: bool = False
+
+    @property
+    def counts(self) -> bool:
+        """Whether there is anything to be found."""
+        return not (self.equivalent or self.valid)
 
     @classmethod
     def of(cls, fault: Fault, stage: str, found: Sequence[tuple[str, str, str, str]]) -> Self:
@@ -116,12 +125,13 @@ def tried(fault: Fault, tools: Tools) -> Row:
         trial = examined(fault.bad, tools)
         row = Row.of(fault, trial.stage, [(one.code, one.where, one.route or "", one.message) for one in trial.findings[:_SHOWN]])
         if trial.stage == "none" and trial.assembly is not None:
-            return _unseen(row, _assembled(fault.good, tools), trial.assembly)
+            return _unseen(row, fault, _assembled(fault.good, tools), trial.assembly)
     except Exception as error:  # noqa: BLE001 - the other cases are tried all the same
         return Row.of(fault, "defect", [("defect", fault.name, "", repr(error))])
     naming = [finding for finding in trial.findings if _names(finding, fault)]
     worst = [finding for finding in naming if finding.severity == naming[0].severity]
-    right = bool(worst) and all(_addressee(finding, fault) == fault.kind.side for finding in worst)
+    sides = {fault.kind.side, "script"} if fault.kind.misplaces else {fault.kind.side}
+    right = bool(worst) and all(_addressee(finding, fault) in sides for finding in worst)
     return replace(row, named=bool(naming), addressed=right)
 
 
@@ -189,17 +199,17 @@ def _addressee(finding: Finding, fault: Fault) -> str:
 # ---------------------------------------------------------------- escapes
 
 
-def _unseen(row: Row, good: Assembly, bad: Assembly) -> Row:
+def _unseen(row: Row, fault: Fault, good: Assembly, bad: Assembly) -> Row:
     """Return the row of a case in which nothing was found."""
     if _is_same(good, bad):
         return replace(row, equivalent=True)
-    return replace(row, escaped=True, held=_held(good, bad))
+    return replace(row, valid=True) if fault.kind.side == "plan" and _is_valid(fault.good.name, bad) else replace(row, escaped=True)
 
 
-def _held(good: Assembly, bad: Assembly) -> tuple[str, ...]:
-    """Return the codes of the judgement of joints that the good product does not have."""
-    known = {(finding.code, finding.where) for finding in good.check_joints().findings}
-    return tuple(sorted({one.code for one in bad.check_joints().findings if (one.code, one.where) not in known}))
+def _is_valid(name: str, assembly: Assembly) -> bool:
+    """Return whether an assembly holds every check of the task whose reference a product is; False if it is that of none."""
+    tasks = [task for folder, task in tasks_in() if task.reference and reference_folder(folder, task) == Product.folder(name)]
+    return bool(tasks) and all(judgement.ok for task in tasks for judgement in task.judge(Subject(assembly)))
 
 
 def _is_same(good: Assembly, bad: Assembly) -> bool:

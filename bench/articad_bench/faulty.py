@@ -50,9 +50,13 @@ class Product:
         Raises:
             ReadError: If there is none of this name.
         """
+        return cls.read(name, cls.folder(name))
+
+    @staticmethod
+    def folder(name: str) -> Path:
+        """Return the folder of an example, or of the reference of a task."""
         reference = TASKS / name / "reference"
-        folder = reference if reference.is_dir() else examples.folder(name)
-        return cls.read(name, folder)
+        return reference if reference.is_dir() else examples.folder(name)
 
     @classmethod
     def read(cls, name: str, folder: Path) -> Self:
@@ -94,6 +98,8 @@ class Kind:
         meaning: What is done.
         causes: Codes of findings that state this cause.
         sites: Lists the places in a product where it can be made.
+        misplaces: Whether the plan orders connectors elsewhere than the scripts build the features. Then a script departs from its order
+            as well as the plan from its meaning, so that either may be asked.
     """
 
     name: str
@@ -101,6 +107,7 @@ class Kind:
     meaning: str
     causes: frozenset[str]
     sites: Callable[[Product], Iterable[Site]]
+    misplaces: bool = False
 
 
 @dataclass(frozen=True)
@@ -154,10 +161,8 @@ def _made(kind: Kind, product: Product, site: Site) -> Fault:
     return Fault(kind, product, bad, site.said, site.names)
 
 
-_OBEDIENT: Final = """
-
-_as_before = build
-_PLACES = {places}
+OBEDIENT: Final = "\n\n_as_before = build\n"  # begins what is added to the script of an author who follows a faulty plan
+_OBEDIENT: Final = """_PLACES = {places}
 
 
 def build(part):
@@ -185,5 +190,5 @@ def _obedient(product: Product, plan: Json) -> Mapping[str, str]:
         name = part["name"]
         if changed and "freecad" not in scripts[name]:
             own = product.resolved.parts[name].connectors
-            scripts[name] += _OBEDIENT.format(places={one: tuple(own[one].frame.translation.tolist()) for one in changed})
+            scripts[name] += OBEDIENT + _OBEDIENT.format(places={one: tuple(own[one].frame.translation.tolist()) for one in changed})
     return scripts

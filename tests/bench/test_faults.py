@@ -15,7 +15,7 @@ from articad.kernels.kernel import BuildCache
 from articad_bench.fault_run import KINDS, FaultRun
 from articad_bench.fault_table import page, report
 from articad_bench.fault_trial import Row, Tools, tried
-from articad_bench.faulty import _OBEDIENT, PRODUCTS, Fault, Kind, Product, chosen
+from articad_bench.faulty import OBEDIENT, PRODUCTS, Fault, Kind, Product, chosen
 
 KIND = {kind.name: kind for kind in KINDS}
 
@@ -50,7 +50,7 @@ def test_there_are_forty_kinds_and_four_hundred_cases_over_twenty_products() -> 
 def test_no_case_is_the_good_product() -> None:
     for fault in every().faults:
         assert (fault.bad.plan, fault.bad.scripts) != (fault.good.plan, fault.good.scripts), fault.name
-        scripts = {part: text.removesuffix(_OBEDIENT) for part, text in fault.bad.scripts.items()}  # authors follow faulty connectors
+        scripts = {part: text.split(OBEDIENT)[0] for part, text in fault.bad.scripts.items()}  # authors follow faulty connectors
         changed = {"plan": fault.bad.plan != fault.good.plan, "script": scripts != fault.good.scripts}
         assert [side for side, is_changed in changed.items() if is_changed] == [fault.kind.side], fault.name
 
@@ -109,16 +109,20 @@ def test_the_same_product_by_another_script_is_no_escape() -> None:
     assert not row.escaped
 
 
-def test_another_product_without_a_finding_is_an_escape() -> None:
+@pytest.mark.parametrize(("kind", "outcome"), [("unit_inch", "valid"), ("shape_off", "escaped")])
+def test_another_product_without_a_finding_is_an_escape_or_in_a_plan_another_valid_answer(kind: str, outcome: str) -> None:
+    """The back is 1 mm narrower, which the checks of the task allow."""
     good = Product.named("bookcase_low")
     plan = copy.deepcopy(good.plan)
     back = next(part for part in plan["parts"] if part["name"] == "back")
     back["dimensions"]["width"] = back["dimensions"]["width"] - 1
     back.pop("envelope_mm", None)
-    row = tried(made("unit_inch", good, replace(good, plan=plan), "back"), tools())
+    row = tried(made(kind, good, replace(good, plan=plan), "back"), tools())
     assert row.stage == "none"
-    assert row.escaped
-    assert not row.equivalent
+    assert {"escaped": row.escaped, "valid": row.valid, "equivalent": row.equivalent} == {
+        **{"escaped": False, "valid": False, "equivalent": False},
+        outcome: True,
+    }
     assert not row.named
 
 
@@ -148,21 +152,28 @@ def row(kind: Kind, **given: object) -> Row:
 def test_the_page_counts_what_it_lists() -> None:
     rows = [
         row(KIND["pose_off"]),
-        row(KIND["limit_sign"], stage="none", escaped=True, named=False, addressed=False, findings=(), held=("W_JOINT_SHORT",)),
+        row(KIND["limit_sign"], stage="none", escaped=True, named=False, addressed=False, findings=()),
         row(KIND["limit_order"], stage="none", equivalent=True, named=False, addressed=False, findings=()),
+        row(KIND["fit_narrow"], stage="none", valid=True, named=False, addressed=False, findings=()),
         row(KIND["two_solids"], addressed=False),
         row(KIND["shape_off"], named=False, addressed=False),
     ]
-    told = report(rows, {"p": ["E_OVERLAP"], "q": []}, planned=6)
-    assert (told["all"]["cases"], told["all"]["same"], told["all"]["escaped"], told["all"]["named"], told["all"]["addressed"]) == (
-        *(4, 1, 1, 2, 1),
-    )
+    told = report(rows, {"p": ["E_OVERLAP"], "q": []}, planned=7)
+    assert (
+        told["all"]["cases"],
+        told["all"]["same"],
+        told["all"]["valid"],
+        told["all"]["escaped"],
+        told["all"]["named"],
+        told["all"]["addressed"],
+    ) == (*(4, 1, 1, 1, 2, 1),)
     text = page(told, KINDS)
-    assert "5 of 6 cases were tried." in text
+    assert "6 of 7 cases were tried." in text
     assert "Escaped: 1 of 4 (25.0 %). Named: 2 of 4 (50.0 %). Addressed: 1 of 4 (25.0 %)." in text
     assert "False alarms: 1, on 2 good products.\n- p: E_OVERLAP" in text
-    assert "False alarms: not measured" in page(report(rows, {}, planned=6), KINDS)
-    assert "| `p:limit_sign` | said | W_JOINT_SHORT |" in text
+    assert "False alarms: not measured" in page(report(rows, {}, planned=7), KINDS)
+    assert "| `p:limit_sign` | said |" in text.split("## Escapes")[1].split("##")[0]
+    assert "| `p:fit_narrow` | said |" in text.split("## Other valid answers")[1].split("##")[0]
     assert "| `p:two_solids` | said | `E_FIT` joints.a (design) |" in text.split("Named, but addressed")[1]
     assert "| `p:shape_off` | said | `E_FIT` joints.a (design) |" in text.split("Found, but not named")[1]
 
