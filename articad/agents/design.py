@@ -21,7 +21,6 @@ from articad.runs.run import RunRequest
 TRIES: Final = 5  # answers until a plan is valid; the findings of each go back to the model
 SHOWN_FINDINGS: Final = 40  # more at once are not read; the next answer brings the rest
 DOUBTS: Final = frozenset({"W_SCALE", "W_DENSITY", "W_DIMENSION_SIGN", "W_BORE_NARROW"})  # probably mistaken: asked about once each
-HELD: Final = frozenset({"W_JOINT_NOT_MADE", "W_JOINT_PARTLY_MADE", "W_JOINT_LEAVES", "W_JOINT_SHORT"})  # asked about once each, too
 ROLE: Final = "design"
 ANALYSIS: Final = "Its analysis, made before there was a plan (where numbers differ, what the request states binds, then the plan):"
 _DIALECTS: Final = {

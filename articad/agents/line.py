@@ -11,7 +11,7 @@ from typing import Any, Final, Protocol
 
 from articad.agents import brainstorm
 from articad.agents.brainstorm import Alternative
-from articad.agents.design import DOUBTS, HELD, Designer, listed
+from articad.agents.design import DOUBTS, Designer, listed
 from articad.agents.evidence import Evidence, examine
 from articad.agents.inspection import Verdict, inspect, verdict_of
 from articad.agents.llm import Image, closed_port
@@ -185,7 +185,7 @@ class Line:
             evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
         self.builder.announce("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
-        doubts = Findings(finding for finding in assembly.findings + evidence.findings if finding.code in DOUBTS | HELD)
+        doubts = Findings(finding for finding in assembly.findings if finding.code in DOUBTS)
         verdict = verdict_of(evidence, number)
         if not self.options.get("inspection", False):
             return evidence, replace(verdict, findings=verdict.findings + doubts)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
-from articad.agents.design import DOUBTS, HELD
+from articad.agents.design import DOUBTS
 from articad.agents.llm import LLM, system, user
 from articad.agents.orders import source_of
 from articad.agents.part_writer import specification
@@ -187,7 +187,7 @@ def _culprit(finding: Finding, resolved: ResolvedPlan) -> str | None:
 
 
 def _is_opinion(finding: Finding) -> bool:
-    return finding.code.startswith("W_LOOK_") or finding.code in DOUBTS | HELD
+    return finding.code.startswith("W_LOOK_") or finding.code in DOUBTS
 
 
 def _signature(finding: Finding) -> _Signature:

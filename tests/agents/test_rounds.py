@@ -112,6 +112,7 @@ def build(part):
 """
 TIGHT = WHEEL.replace('Cylinder(d["bore_radius"]', 'Cylinder(d["bore_radius"] - 0.7')
 ASIDE = WHEEL.replace("Pos(0, 0, -1)", 'Pos(d["bore_radius"] / 4, 0, -1)')
+CONE = ASIDE.replace('Cylinder(d["bore_radius"]', 'Cone(d["bore_radius"], 1.02 * d["bore_radius"]').replace("Align, ", "Align, Cone, ")
 SOLID = WHEEL.replace("Pos(0, 0, -1)", "Pos(0, 0, 50)")
 
 
@@ -366,9 +367,17 @@ def test_a_hole_that_was_not_bored_goes_to_the_script_with_the_number(tmp_path: 
     assert not [step for step in llm.steps if step.startswith("rollback")]
 
 
+def test_a_bore_beside_its_axis_goes_to_the_script_with_the_distance(tmp_path: Path) -> None:
+    llm = wheel("frame", part__wheel__1=fenced(ASIDE), part__wheel__2=fenced(WHEEL))
+    made(tmp_path, llm)
+
+    assert "wheel has its bore of 6.4 mm 0.8 mm beside the axis of joint 'turn'." in said(llm, "part/wheel/2")
+    assert not [step for step in llm.steps if step.startswith("rollback")]
+
+
 def test_where_geometry_does_not_tell_a_model_decides_with_both_entries_and_scripts_before_it(tmp_path: Path) -> None:
     decision = {"fault": 1, "route": "code", "part": "wheel", "reason": "the bore is not in the middle"}
-    llm = wheel("frame", part__wheel__1=fenced(ASIDE), part__wheel__2=fenced(WHEEL), rollback__1=json.dumps({"decisions": [decision]}))
+    llm = wheel("frame", part__wheel__1=fenced(CONE), part__wheel__2=fenced(WHEEL), rollback__1=json.dumps({"decisions": [decision]}))
     run = made(tmp_path, llm)
     told = said(llm, "rollback/1")
 
@@ -384,7 +393,7 @@ def test_a_decision_about_no_fault_or_no_part_is_asked_for_again(tmp_path: Path)
     design = {"decisions": [{"fault": 1, "route": "design", "part": "", "reason": "the order is wrong"}]}
     llm = wheel(
         "frame",
-        part__wheel__1=fenced(ASIDE),
+        part__wheel__1=fenced(CONE),
         rollback__1=json.dumps({"decisions": []}),
         rollback__1__2=json.dumps(nobody),
         rollback__1__3=json.dumps(design),
@@ -522,7 +531,7 @@ def test_a_run_with_every_kind_of_detour_is_replayed_byte_for_byte_and_draws_not
     decision = {"fault": 1, "route": "code", "part": "wheel", "reason": "the bore is not in the middle"}
     llm = wheel(
         "frame",
-        part__wheel__1=fenced(ASIDE),
+        part__wheel__1=fenced(CONE),
         part__wheel__2=fenced(WHEEL),
         look__post__1=looks("shape", "specification"),
         rollback__1=json.dumps({"decisions": [decision]}),

@@ -120,7 +120,9 @@ def test_another_product_without_a_finding_is_an_escape_or_in_a_plan_another_val
     row = tried(made(kind, good, replace(good, plan=plan), "back"), tools())
     assert row.stage == "none"
     assert {"escaped": row.escaped, "valid": row.valid, "equivalent": row.equivalent} == {
-        **{"escaped": False, "valid": False, "equivalent": False},
+        "escaped": False,
+        "valid": False,
+        "equivalent": False,
         outcome: True,
     }
     assert not row.named

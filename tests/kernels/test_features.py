@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 import trimesh
+from build123d import Axis, Box, Pos, fillet
 from numpy.random import default_rng
 
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
+from articad.geometry.faces import faces_of
 from articad.geometry.mesh import TriMesh
-from articad.kernels.features import feature_findings
+from articad.kernels.features import bore_findings, feature_findings
+from articad.kernels.tessellation import tessellate
 
 SEEDS = range(8)
 
@@ -80,3 +85,27 @@ def test_a_part_mirrored_turned_or_in_inches_loses_the_face(seed: int) -> None:
 
     assert found("mount_face", frame, mesh_of(shape, T)) == ()
     assert [found("mount_face", frame, mesh_of(one, T)) for one in wrong.values()] == [("W_CONNECTOR_FEATURE",)] * 3
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_bore_like_a_needle_cannot_be_made(seed: int) -> None:
+    T, rng = place(seed), default_rng(seed)
+    width = float(rng.uniform(0.05, 0.45))
+
+    def codes(width: float, depth: float) -> tuple[str, ...]:
+        shape = trimesh.creation.annulus(width / 2, width / 2 + 5, depth, sections=48)
+        return bore_findings("part", mesh_of(shape, T)).codes
+
+    assert codes(width, 12 * width) == ("W_BORE_NARROW",)
+    assert codes(width, 8 * width) == ()
+    assert codes(0.55, 60) == ()
+
+
+def test_a_sharp_inner_fillet_is_no_bore() -> None:
+    angle = Box(20, 20, 60) - Pos(5, 5, 0) * Box(20, 20, 60)
+    corner = angle.edges().filter_by(Axis.Z).sort_by_distance((-5, -5, 0))[0]
+    found = tessellate(fillet(corner, 0.2).wrapped, 0.01, math.radians(5))
+    mesh = TriMesh(found.vertices, found.triangles, found.face)
+
+    assert any(face.kind == "cylinder" and face.hollow for face in faces_of(mesh))
+    assert bore_findings("part", mesh).codes == ()

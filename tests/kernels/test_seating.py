@@ -251,6 +251,22 @@ def test_one_dimension_far_longer_than_the_part_is_the_plans_fault_and_several_a
     assert codes(box * by, width=WIDTH, height=40, depth=4) == [("W_PART_SCALE", "code")]
 
 
+@pytest.mark.parametrize("name", ["thickness", "wall", "side_thickness"])
+def test_a_thickness_out_of_proportion_is_the_plans_fault(name: str) -> None:
+    gate = plan().parts["gate"]
+
+    def codes(size: tuple[float, float, float], density: float, **dimensions: float) -> list[tuple[str, str]]:
+        material = replace(gate.material, density=density)
+        found = dimension_findings(replace(gate, dimensions=dimensions, material=material), np.array([[0, 0, 0], size]))
+        return [(one.code, one.where.rsplit(".", 1)[-1]) for one in found]
+
+    assert codes((600, 18, 400), 700, **{name: 18, "width": 600}) == []
+    assert codes((20, 8000, 200), 7850, **{name: 8000, "width": 200}) == [("W_SCALE", name)]  # longer than the part is wide
+    assert codes((600, 0.7, 400), 700, **{name: 0.7, "width": 600}) == [("W_SCALE", name)]  # wood like foil
+    assert codes((600, 0.7, 400), 7850, **{name: 0.7, "width": 600}) == []  # sheet metal
+    assert codes((600, 0.7, 400), 700, depth=0.7, width=600) == []
+
+
 def test_all_parts_of_a_plan_are_built(kernel: Build123dKernel, cache: BuildCache) -> None:
     """The fixture with one joint of each kind: every part is one valid solid and without a finding."""
     folder = Path(__file__).parents[1] / "fixtures" / "five_joints"

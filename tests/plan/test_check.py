@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -1003,6 +1004,19 @@ def test_numbers_that_nothing_has_are_refused() -> None:
     connector(plan, "box", "hinge")["o"] = [1e300, 0, 0]
     finding = only(check(plan), "E_SCALE")
     assert (finding.where, finding.value, finding.limit) == ("parts.box.connectors.hinge.o[0]", 1e300, 1e12)
+
+
+@pytest.mark.parametrize("degrees", [45, 90, 180, 270, 360, 720, 1800, 3600])
+def test_limits_that_are_even_in_radians_alone_are_found_whatever_their_size(degrees: int) -> None:
+    def codes(low: float, high: float) -> tuple[str, ...]:
+        return check(chest_with(lambda p: joint(p, "hinge").update(angle_deg=[low, high]))).codes
+
+    for radians in (math.radians(degrees), round(math.radians(degrees), 3)):
+        assert "W_LIMITS_UNITS" in codes(0, radians)
+        assert "W_LIMITS_UNITS" in codes(-radians, radians)
+    if degrees <= 720:
+        assert "W_LIMITS_UNITS" not in codes(0, degrees)
+    assert "W_LIMITS_UNITS" not in codes(0, round(math.radians(degrees)) + 6.5)
 
 
 def test_a_coupled_joint_may_turn_as_often_as_its_partner_asks_for() -> None:
