@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from articad.commands.command import argument, command
-from articad.commands.options import FORMATS, SANDBOX, SPLIT, TREES, formats
+from articad.commands.options import DRAWINGS, FORMATS, SANDBOX, SPLIT, TREES, formats
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     ),
     SPLIT,
     TREES,
+    DRAWINGS,
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
@@ -66,6 +67,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         "keep_frames": options.keep_frames,
         "split": options.split,
         "trees": options.trees,
+        "drawings": options.drawings,
     }
     exports: dict[str, Report] = {}
     with terminal.progress("Exporting", total=len(options.formats)) as tell:
@@ -104,13 +106,14 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     ),
     SPLIT,
     TREES,
+    DRAWINGS,
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
     from articad.formats import convert, format_of
 
     target = Path(options.target)
-    given = {"keep_frames": options.keep_frames, "split": options.split, "trees": options.trees}
+    given = {"keep_frames": options.keep_frames, "split": options.split, "trees": options.trees, "drawings": options.drawings}
     more: dict[str, Any] = {name: True for name, value in given.items() if value}  # a format without the option refuses it
     read = {"root": options.root, "fuse": options.fuse, "srdf": options.srdf}
     with terminal.progress("Converting"):

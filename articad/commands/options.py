@@ -88,6 +88,9 @@ TREES = argument(
     action="store_true",
     help="for FreeCAD: trace build123d scripts, so that their parts get feature trees that follow the parameters (slower the first time)",
 )
+DRAWINGS = argument(
+    "--drawings", action="store_true", help="for FreeCAD: add a dimensioned page for each part, one of the assembly, and an exploded view"
+)
 BUILD_ARGUMENTS = (
     OUT,
     argument("--kernel", choices=["build123d", "freecad"], default=None, help="the kernel that builds part scripts (the plan's choice)"),

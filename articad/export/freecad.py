@@ -16,12 +16,14 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from articad.aliases import Json
 from articad.errors import ExportError, KernelError, KernelUnavailableError
 from articad.export.bundle import Bundle
 from articad.export.freecad_file import Appearance, normalised
 from articad.export.freecad_job import Job
-from articad.export.freecad_look import verify
+from articad.export.freecad_look import WITH_THREADS, verify
 from articad.export.freecad_native import document
+from articad.export.freecad_pages import drawings as drawings_of
 from articad.export.freecad_split import content_of_files
 from articad.export.freecad_split import split as divided
 from articad.export.losses import refuse
@@ -40,13 +42,19 @@ if TYPE_CHECKING:
     from articad.assembly import Assembly
 
 PROGRAM = Path(freecad_install.__file__).parent / "inside_freecad" / "document.py"
-_SECONDS, _SECONDS_A_PART = 120.0, 5.0
+_SECONDS, _SECONDS_A_PART, _SECONDS_A_PAGE = 120.0, 5.0, 60.0
 _PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that FreeCAD always writes
 
 
 @of_the_product
 def write_freecad(
-    assembly: Assembly, *, strict: bool = False, freecad: FreeCAD | None = None, split: bool = False, trees: bool = False
+    assembly: Assembly,
+    *,
+    strict: bool = False,
+    freecad: FreeCAD | None = None,
+    split: bool = False,
+    trees: bool = False,
+    drawings: bool = False,
 ) -> Bundle:
     """Write an assembly as a FreeCAD 1.0 document; FreeCAD 1.1 opens it as well.
 
@@ -54,6 +62,7 @@ def write_freecad(
         assembly: The assembly, written at rest.
         strict: Refuse what FreeCAD cannot hold.
         split: Write one file for each part, and one for the parameters, in a folder beside the document, which links to them.
+        drawings: Add a dimensioned page for each part, one of the assembly with balloons and parts list, and an exploded view.
         freecad: The FreeCAD that writes it; by default the installed one. Without FreeCAD, the document is written as by
             `write_freecad_alone`.
         trees: Give parts whose scripts are written in build123d their feature trees, which are traced, tried at other dimensions, and
@@ -66,15 +75,19 @@ def write_freecad(
     Raises:
         UnrepresentableError: If `strict` and something is lost.
         ExportError: If FreeCAD fails.
+        KernelUnavailableError: If there is no FreeCAD, and `drawings` is asked for.
     """
     try:
         freecad = freecad or freecad_install.find()
     except KernelUnavailableError:
+        if drawings:
+            raise
         return write_freecad_alone(assembly, strict=strict, split=split)
     with scratch.folder("freecad") as name:
         folder = Path(name)
         job = Job(assembly, folder, trees=_trees(assembly, freecad) if trees else None)
-        (folder / "job.json").write_text(json.dumps(job.to_json()))
+        content_of_job = job.to_json()
+        (folder / "job.json").write_text(json.dumps(content_of_job))
         if strict:
             refuse(job.losses)
         seconds = _SECONDS + _SECONDS_A_PART * len(assembly.parts)
@@ -82,10 +95,26 @@ def write_freecad(
         if not ended.ok or not (folder / "report.json").is_file():
             raise _failed(ended.said, late=ended.late)
         report = json.loads(read_file(folder / "report.json", RECORD_BYTES, root=folder))
+        drawn = _drawn(assembly, content_of_job, folder, freecad) if drawings else {"hidden": [], "providers": {}}
         content = read_file(folder / "assembly.FCStd", RECORD_BYTES, root=folder)
-    look = Appearance(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"], tuple(report["tips"]))
+    hidden = (*report["hidden"], *drawn["hidden"])
+    look = Appearance(report["colors"], hidden, tuple(report["joints"]), report["grounded"], tuple(report["tips"]), drawn["providers"])
     files = _files(job.name, content, look, split=split)
-    return Bundle(files, job.losses, verify(files, assembly, freecad))
+    # FreeCAD 1.1 measures some dimensions of curved parts otherwise than 1.0
+    others = [other for other in freecad_install.installed() if drawings and other != freecad]
+    findings = [finding for version in (freecad, *others) for finding in verify(files, assembly, version)]
+    return Bundle(files, job.losses, Findings(findings))
+
+
+def _drawn(assembly: Assembly, job: Json, folder: Path, freecad: FreeCAD) -> Json:
+    """Let FreeCAD add drawings to the document in a folder; return what it reports of them."""
+    (folder / "drawings.json").write_text(json.dumps(drawings_of(assembly, job)))
+    limits = FreeCADLimits(seconds=_SECONDS + _SECONDS_A_PAGE * len(assembly.parts))
+    ended = freecad.run(PROGRAM.with_name("drawings.py"), folder=folder, limits=limits, layers=WITH_THREADS)
+    if not ended.ok or not (folder / "drawn.json").is_file():
+        raise _failed(ended.said, late=ended.late)
+    report: Json = json.loads(read_file(folder / "drawn.json", RECORD_BYTES, root=folder))
+    return report
 
 
 def _trees(assembly: Assembly, freecad: FreeCAD) -> dict[str, PartTree]:

@@ -20,6 +20,7 @@ MAX_BYTES = 64 * 2**20  # of unpacked content
 UNCOMPARED = (
     "properties of the document (comment, author, license)",
     "cameras and line styles",
+    "pages of drawings",
     "cells of the bill of materials",
     "coordinates of points that no constraint of a sketch fixes",
     "objects of other workbenches beyond their numbers, texts and links",
@@ -33,6 +34,7 @@ _DERIVED = (
     "App::Plane",
     "App::Point",
     "App::LocalCoordinateSystem",
+    "TechDraw::",
 )
 _GROUPS = (
     "Assembly::AssemblyObject",

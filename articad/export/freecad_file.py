@@ -21,6 +21,7 @@ from articad.export.freecad_content import PROPERTY, Content, content_of, packed
 from articad.geometry.mesh import TriMesh
 from articad.kernels.freecad_file import bounded, packed, settle, xml_parser
 
+_LETTERS = 3.5  # mm, of the texts of drawings
 _NOTHING = "bnVsbA=="  # base64 of null: FreeCAD's own entry for a view provider without state
 _SHOWN = (  # besides parts and assemblies, objects with a shape of their own
     "PartDesign::Body",
@@ -43,6 +44,7 @@ class Appearance:
         joints: Objects that are joints.
         grounded: The object that grounds a part, if any.
         tips: Features that their bodies show.
+        views: Classes of the view providers of an exploded view and its moves.
     """
 
     colors: Mapping[str, str] = field(default_factory=dict)
@@ -50,6 +52,7 @@ class Appearance:
     joints: Sequence[str] = ()
     grounded: str | None = None
     tips: Sequence[str] = ()
+    views: Mapping[str, str] = field(default_factory=dict)
 
 
 def normalised(content: bytes, look: Appearance | None = None, written: Content | None = None) -> bytes:
@@ -83,6 +86,8 @@ def _carry(root: etree._Element, written: Content) -> None:
 def _is_shown(name: str, kind: str, look: Appearance) -> bool:
     if name in look.hidden:
         return False
+    if kind.startswith("TechDraw::"):
+        return kind != "TechDraw::DrawPage"  # a page that is shown opens its tab with the document
     return kind in _SHOWN or kind in _GROUPS or name in look.joints or name == look.grounded or name in look.tips
 
 
@@ -121,6 +126,11 @@ def _provider(name: str, kind: str, look: Appearance) -> str:
     if name in look.joints or name == look.grounded:
         provider = "ViewProviderGroundedJoint" if name == look.grounded else "ViewProviderJoint"
         proxy = f'<Python value="{_NOTHING}" encoded="yes" module="JointObject" class="{provider}"/>'
+        properties.append(f'<Property name="Proxy" type="App::PropertyPythonObject">{proxy}</Property>')
+    if kind in ("TechDraw::DrawViewDimension", "TechDraw::DrawViewBalloon"):
+        properties.append(f'<Property name="Fontsize" type="App::PropertyLength"><Float value="{_LETTERS}"/></Property>')
+    if name in look.views:
+        proxy = f'<Python value="{_NOTHING}" encoded="yes" module="CommandCreateView" class="{look.views[name]}"/>'
         properties.append(f'<Property name="Proxy" type="App::PropertyPythonObject">{proxy}</Property>')
     inner = "".join(f"\n                {line}" for line in properties)
     expanded = "1" if kind in ("Assembly::AssemblyObject", "Assembly::JointGroup") else "0"

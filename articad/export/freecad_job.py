@@ -56,7 +56,7 @@ _COUPLINGS = {"gear": "Gears", "belt": "Belt", "rack": "RackPinion", "screw": "S
 
 _STEP = 1e-3  # relative change of a parameter, to see what it turns
 PLACED_MM, PLACED_RAD = 1e-7, 1e-10  # by which a placement may differ from its expression
-BILL_COLUMNS = {"Description": "Label2", "Material": "ArticadMaterial", "Mass": "ArticadMass"}
+BILL_COLUMNS = {"Material": "ArticadMaterial", "Mass": "ArticadMass", "Description": "Label2"}
 """Columns that FreeCAD's bill of materials has beside its own, and the properties of parts that they show."""
 _FROZEN = ("shape", "mesh", "empty")  # kinds of geometry without a feature tree
 

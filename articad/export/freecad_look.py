@@ -8,6 +8,7 @@ part, and each placement with the plan's.
 from __future__ import annotations
 
 import json
+import zipfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,7 +21,7 @@ from articad.export.bundle import Bundle
 from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.geometry.part import Part
-from articad.kernels import freecad_install
+from articad.kernels import freecad_install, sandbox
 from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
 from articad.processes import scratch
 
@@ -31,7 +32,9 @@ PROGRAM = Path(freecad_install.__file__).parent / "inside_freecad" / "examine.py
 SAME = 1e-6  # of a volume, relative; of a centre, relative to the part's diagonal
 SAME_MESH = 1e-4  # likewise of a mesh: FreeCAD keeps points in single precision
 SOLVED_MM, SOLVED_RAD = 1e-6, 1e-8  # by which FreeCAD's solver may move a part
-_SECONDS, _SECONDS_A_PART = 120.0, 5.0
+_SECONDS, _SECONDS_A_PART, _SECONDS_A_PAGE = 120.0, 5.0, 60.0
+WITH_THREADS = frozenset(sandbox.LAYERS) - {"seccomp"}
+"""Layers of the sandbox for a document with drawings: FreeCAD projects views in threads, which seccomp refuses."""
 
 
 def verify(content: bytes | Mapping[str, bytes], assembly: Assembly, freecad: FreeCAD) -> Findings:
@@ -79,12 +82,23 @@ def looked(content: bytes | Mapping[str, bytes], freecad: FreeCAD, *, parts: int
         folder = Path(name)
         main = Bundle({"it.FCStd": content} if isinstance(content, bytes) else content).write(folder)[0].name
         (folder / "job.json").write_text(json.dumps({"file": main, "steps": [{"do": "verify"}]}))
-        ended = freecad.run(PROGRAM, folder=folder, limits=FreeCADLimits(seconds=_SECONDS + _SECONDS_A_PART * parts))
+        drawn = b"TechDraw::DrawPage" in _document(folder / main)
+        limits = FreeCADLimits(seconds=_SECONDS + (_SECONDS_A_PAGE if drawn else _SECONDS_A_PART) * parts)
+        ended = freecad.run(PROGRAM, folder=folder, limits=limits, layers=WITH_THREADS if drawn else sandbox.LAYERS)
         if not (folder / "report.json").is_file():
             raise OSError("it ran out of time" if ended.late else last_words(ended.said))
         report: Json = json.loads(read_file(folder / "report.json", RECORD_BYTES, root=folder))
     (step,) = report["steps"]
     return dict(step)
+
+
+def _document(path: Path) -> bytes:
+    """Return the Document.xml of a file, or nothing."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return archive.read("Document.xml")
+    except (zipfile.BadZipFile, KeyError):
+        return b""
 
 
 def last_words(said: str) -> str:
@@ -129,6 +143,9 @@ def _compared(seen: Mapping[str, Any], assembly: Assembly, when: str) -> Iterato
     """Yield what is wrong with a document as it was opened."""
     if seen["invalid"]:
         yield _error("assembly", f"Objects are invalid in {when}: {', '.join(seen['invalid'][:10])}.")
+    for page, problems in seen["drawings"].items():
+        if problems:
+            yield _error("assembly", f"{page} is not complete in {when}: {'; '.join(problems[:5])}.")
     for name, part in assembly.parts.items():
         for stage in ("opened", "recomputed"):
             for problem, value in differences(seen[stage].get(name), part):

@@ -72,5 +72,5 @@ def test_values_over_feature_trees_move_volumes_and_masses() -> None:
         assert after["masses"][name] / before["masses"][name] == pytest.approx(after["volumes"][name] / volume, rel=1e-9), name
     rows = {row[1]: row for row in after["bill"][1:]}
     for name in changed & rows.keys():
-        assert float(rows[name][5].split()[0]) == pytest.approx(after["masses"][name], rel=1e-9), name
+        assert float(rows[name][4].split()[0]) == pytest.approx(after["masses"][name], rel=1e-9), name
     assert sum(int(row[2]) for row in rows.values()) == len(before["parts"])

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +20,8 @@ import FreeCAD as App
 Json = dict[str, Any]
 
 _SHOWN = ("PartDesign::Body", "Part::Feature", "Part::Mirroring")  # what shows a part; a body may be made of mirror images
+_PATIENCE = 300.0  # seconds for all drawings
+_SAME = 1e-6  # mm, of dimensions
 
 
 def main() -> None:
@@ -215,14 +219,44 @@ def _measured(document: Any) -> Json:
         item.touch()
     for held in (*_linked(document), document):
         held.recompute()
+    drawings = _drawings(document)
     placed = {name: _seven(item.Placement) for name, item in _parts(document).items()}
     return {
         "opened": opened,
+        "drawings": drawings,
         "recomputed": {name: _shape_now(item) for name, item in _parts(document).items()},
         "placed": placed,
         "invalid": [f"{item.Name} ({item.getStatusString()})" for item in objects if "Invalid" in item.State],
         "solved": _solve(document, {}),
     }
+
+
+def _drawings(document: Any) -> dict[str, list[str]]:
+    """Wait until FreeCAD has projected all views; return what each page lacks: edges of views, and values of dimensions."""
+    pages = [item for item in document.Objects if item.TypeId == "TechDraw::DrawPage"]
+    views = [item for item in document.Objects if item.TypeId == "TechDraw::DrawViewPart"]
+    if not pages:
+        return {}
+    from PySide import QtCore  # noqa: PLC0415 - only if there are drawings
+
+    application = QtCore.QCoreApplication.instance() or QtCore.QCoreApplication([])
+    end = time.monotonic() + _PATIENCE
+    while time.monotonic() < end and not all(view.getVisibleEdges() for view in views):
+        application.processEvents()
+        time.sleep(0.01)
+    for item in document.Objects:
+        if item.TypeId == "TechDraw::DrawViewDimension":
+            item.touch()
+    document.recompute()
+    return {page.Label: list(_lacking(page)) for page in pages}
+
+
+def _lacking(page: Any) -> Iterator[str]:
+    for item in page.Views:
+        if item.TypeId == "TechDraw::DrawViewPart" and not item.getVisibleEdges():
+            yield f"view {item.Label} shows nothing"
+        if item.TypeId == "TechDraw::DrawViewDimension" and not abs(item.getRawValue() - item.ArticadValue) <= _SAME:
+            yield f"dimension {item.Label} is {item.getRawValue():.9g}, not {item.ArticadValue:.9g}"
 
 
 def _shape_now(part: Any) -> Json:
