@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import tempfile
 import zipfile
 from collections.abc import Callable
@@ -22,9 +23,10 @@ from articad.export.freecad_look import verify
 from articad.formats import convert
 from articad.importers.freecad import read_freecad
 from articad.kernels import freecad_install
+from articad.kernels.freecad_file import packed
 from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
 from tests.freecad import cupboard, opened
-from tests.freecad.test_split import replaced, same, two_boxes
+from tests.freecad.test_split import same, two_boxes
 
 VERSIONS = pytest.mark.parametrize(
     "freecad", [freecad_install.find, pytest.param(opened.newer, marks=pytest.mark.freecad_next)], ids=["1.0", "next"]
@@ -78,8 +80,11 @@ def test_freecad_projects_all_views_and_measures_all_dimensions(freecad: Callabl
 @pytest.mark.freecad
 @opened.needs_freecad
 def test_a_dimension_that_is_not_the_plans_is_an_error_with_its_page() -> None:
-    (value,) = {rows["ArticadValue"] for kind, rows in objects(content()) if rows.get("FormatSpec") == "length %.2w"}
-    other = replaced(content(), f'<Float value="{value}"/>', '<Float value="20.5"/>')
+    with zipfile.ZipFile(io.BytesIO(content())) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    changed, count = re.subn(rb'(name="ArticadValue"[^>]*>\s*<Float value=")20\.0*"', rb'\g<1>20.5"', files["Document.xml"])
+    assert count == 1
+    other = packed(files | {"Document.xml": changed})
     findings = [finding for finding in verify(other, cupboard.assembly(), freecad_install.find()) if "Drawing of" in finding.message]
     assert [finding.code for finding in findings] == ["E_FREECAD"]
     assert "Drawing of knob" in findings[0].message
