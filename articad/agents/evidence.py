@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from articad.agents.numbers import placed, short
-from articad.agents.orders import addressed
+from articad.agents.orders import HELD, addressed
 from articad.agents.travel import travels
 from articad.arrays import FloatArray
 from articad.assembly import Assembly, Poses
@@ -37,10 +37,12 @@ class Evidence:
     Attributes:
         checks: The rest pose with the declared fits and, if nothing overlaps there, samples of each joint's range.
         sizes: Least and greatest corner of each part at rest, in the assembly's frame [mm].
+        joints: Warnings about joints that surfaces do not make, if nothing overlaps at rest.
     """
 
     checks: Checks
     sizes: Mapping[str, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
+    joints: Findings = field(default_factory=Findings)
 
     @property
     def ok(self) -> bool:
@@ -50,7 +52,7 @@ class Evidence:
     @property
     def findings(self) -> Findings:
         """All findings, with their causes."""
-        return self.checks.findings
+        return self.checks.findings + self.joints
 
 
 @dataclass(frozen=True)
@@ -79,12 +81,15 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
     """
     scene = assembly.scene()
     checks = assembly.check(known=None if known is None else known.rest)
+    joints = Findings()
     if all(finding.stage == "fit" for finding in checks.findings.errors):  # what overlaps at rest overlaps in motion too
         for joint in assembly.mechanism.driving_joints:
             checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
-        checks = replace(checks, findings=checks.findings + assembly.check_joints().findings)
-    checks = replace(checks, findings=addressed(diagnose(scene, assembly.mechanism.tree, checks.findings), assembly, scene))
-    return Evidence(checks, _sizes(assembly))
+        joints = assembly.check_joints().findings
+    found = addressed(diagnose(scene, assembly.mechanism.tree, checks.findings) + joints, assembly, scene)
+    joints = Findings(finding for finding in found if finding.code in HELD)
+    checks = replace(checks, findings=Findings(finding for finding in found if finding.code not in HELD))
+    return Evidence(checks, _sizes(assembly), joints)
 
 
 def told(assembly: Assembly, evidence: Evidence) -> str:

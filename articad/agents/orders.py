@@ -5,7 +5,7 @@ part has no effect, if it alone has nothing round about the axis of a joint or h
 of its dimensions states, or if such a bore is closed at a depth that they do not give. What else is wrong about
 such a part may follow from that, so it waits for the script. A hole or slot that is absent from a script that follows its order was not
 ordered: the plan is wrong. It is wrong as well if a fit is off by just what both surfaces differ, and both have the diameters that were
-ordered. All faults of two parts go to the same author. Everything else stays open.
+ordered, or if its gap is a clearance that the plan states. All faults of two parts go to the same author. Everything else stays open.
 """
 
 from __future__ import annotations
@@ -28,10 +28,12 @@ from articad.plan.resolve import ResolvedPlan
 from articad.realisation.bores import TILT
 from articad.realisation.sides import sides
 
-__all__ = ["addressed", "source_of"]
+__all__ = ["HELD", "addressed", "source_of"]
 
 _FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
-_CODES: Final = _FITS | {"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FLOATING", "E_NOT_TOUCHING"}
+HELD: Final = frozenset({"W_JOINT_NOT_MADE", "W_JOINT_PARTLY_MADE", "W_JOINT_LEAVES", "W_JOINT_SHORT"})
+"""Codes of joints that surfaces do not make."""
+_CODES: Final = _FITS | HELD | {"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FLOATING", "E_NOT_TOUCHING"}
 _CUT: Final = frozenset({"unbored_hole", "missing_slot"})  # causes that a cut mends: one that was ordered, or one that must be
 _ABOUT_AXIS: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
 _ON_AXIS_MM: Final = 0.2  # a pin whose axis is farther away from that of a bore was not made for it
@@ -83,7 +85,7 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene) -> 
     surfaces = {joint.name: _mating(scene, joint) for joint in joints}
     departed = _departed(assembly, assembly.resolved, scene, joints, surfaces)
     ordered = {frozenset({joint.parent, joint.child}) for joint in joints if any(_explains(surfaces[joint.name], one) for one in several)}
-    ordered |= {frozenset(finding.parts) for finding in several if finding.cause in _CUT}
+    ordered |= {frozenset(one.parts) for one in several if one.cause in _CUT or _is_clearance(one, assembly.resolved)}
     return Findings(
         _addressed(finding, between.get(finding.where, finding.parts), assembly.resolved, departed, ordered) for finding in several
     )
@@ -150,6 +152,15 @@ def _explains(surfaces: Sequence[_Round], finding: Finding) -> bool:
         return False
     plays = [(bore.diameter - pin.diameter) / 2 for bore, pin in zip(surfaces[::2], surfaces[1::2], strict=True)]
     return any(play < 0.0 or (finding.value is not None and abs(finding.value - play) < _PLAY_MM) for play in plays)
+
+
+def _is_clearance(finding: Finding, resolved: ResolvedPlan) -> bool:
+    """Return whether the gap of a fit is a clearance that the plan gives to one of its parts."""
+    if finding.code not in _FITS or finding.value is None or finding.value <= 0.0:
+        return False
+    given = [resolved.parts[source_of(name, resolved)].dimensions for name in finding.parts if name in resolved.parts]
+    stated = [value for dimensions in given for name, value in dimensions.items() if _CLEARANCE.search(name)]
+    return any(abs(finding.value - value) < _ROUNDING_MM for value in stated)
 
 
 def _mating(scene: Scene, joint: Joint) -> list[_Round]:

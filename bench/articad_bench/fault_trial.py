@@ -232,9 +232,13 @@ def _configurations(assembly: Assembly) -> list[Any]:
     """Return the rest pose, and one where each driver is moved a little: enough to show every axis."""
     rest = np.asarray(assembly.mechanism.rest, dtype=np.float64)
     moved = [rest]
-    for column in range(len(assembly.drivers)):
-        moved.append(rest.copy())
-        moved[-1][column] += 0.05
+    for column, driver in enumerate(assembly.drivers):
+        q = rest.copy()
+        q[column] += 0.05
+        if driver.unit == "1":  # a component of a quaternion
+            own = [at for at, other in enumerate(assembly.drivers) if other.joint == driver.joint and other.unit == "1"]
+            q[own] /= np.linalg.norm(q[own])
+        moved.append(q)
     return moved
 
 
