@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
+from articad_bench.fault_reasons import REASONS
 from articad_bench.fault_trial import Row
 from articad_bench.faulty import Kind
 
@@ -101,10 +102,10 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
     lines += [
         "## Escapes",
         "",
-        "No error and no warning: a check is missing, or the mistake makes another product that is possible.",
+        "No error and no warning.",
         "",
     ]
-    lines += _table(("case", "mistake"), [(f"`{row.case}`", row.said) for row in rows if row.escaped])
+    lines += _table(("case", "mistake", "why"), [(f"`{row.case}`", row.said, REASONS.get(row.case, "")) for row in rows if row.escaped])
     lines += ["## Other valid answers", "", *_table(("case", "mistake"), [(f"`{row.case}`", row.said) for row in rows if row.valid])]
     elsewhere = [(f"`{row.case}`", row.said, _first(row)) for row in rows if row.named and not row.addressed]
     lines += ["## Named, but addressed to another", "", *_table(("case", "mistake", "first finding"), elsewhere)]

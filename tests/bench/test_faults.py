@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from articad.kernels.kernel import BuildCache
+from articad_bench.fault_reasons import REASONS
 from articad_bench.fault_run import KINDS, FaultRun
 from articad_bench.fault_table import page, report
 from articad_bench.fault_trial import Row, Tools, tried
@@ -101,10 +102,12 @@ def test_a_faulty_script_breaks_its_contract(kind: str, code: str) -> None:
     assert row.addressed
 
 
-def test_the_same_product_by_another_script_is_no_escape() -> None:
-    good = Product.named("hinge_butt_pin")
-    bad = replace(good, scripts={**good.scripts, "pin": good.scripts["pin"] + "\n# another script\n"})
-    row = tried(made("literal_number", good, bad, "pin"), tools())
+@pytest.mark.parametrize(("product", "part"), [("hinge_butt_pin", "pin"), ("rod_tie_two_balls", "stud")])
+def test_the_same_product_by_another_script_is_no_escape(product: str, part: str) -> None:
+    """Also with balls, whose coordinates are quaternions."""
+    good = Product.named(product)
+    bad = replace(good, scripts={**good.scripts, part: good.scripts[part] + "\n# another script\n"})
+    row = tried(made("literal_number", good, bad, part), tools())
     assert row.equivalent
     assert not row.escaped
 
@@ -182,7 +185,9 @@ def test_the_page_counts_what_it_lists() -> None:
 
 def test_the_page_of_the_docs_is_that_of_its_results() -> None:
     folder = Path(__file__).resolve().parents[2] / "docs" / "reference"
-    assert (folder / "faults.md").read_text() == page(json.loads((folder / "faults.json").read_text()), KINDS)
+    stored = json.loads((folder / "faults.json").read_text())
+    assert (folder / "faults.md").read_text() == page(stored, KINDS)
+    assert {found["case"] for found in stored["rows"] if found["escaped"]} == set(REASONS)
 
 
 @pytest.mark.soak
