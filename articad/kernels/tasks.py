@@ -34,8 +34,6 @@ def trace_script(request: Json, files: dict[str, int]) -> None:
         job["script"],
         job["part"],
         job["variations"],
-        needed=job["needed"],
-        budget=job["budget"],
         seconds=limits["seconds"],
         report=lambda line: _write(files["report"], measure.to_json(line)),
     )

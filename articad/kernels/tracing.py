@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import signal
 import sys
-import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final
 
@@ -35,8 +34,6 @@ def run(
     part: Json,
     variations: Sequence[Sequence[Json]],
     *,
-    needed: int,
-    budget: float,
     seconds: float,
     report: Callable[[Json], None],
 ) -> None:
@@ -49,8 +46,6 @@ def run(
         script: The source.
         part: The brief of the part.
         variations: For each, dimensions by name, and others to try where the script does not build those.
-        needed: How many of the variations are always measured.
-        budget: Seconds after which the others are left out.
         seconds: Wall clock; the process is killed by SIGALRM after it.
         report: Receives each line.
     """
@@ -65,10 +60,7 @@ def run(
         report({"ok": False, "reason": f"line {said['line']}: with traced numbers it fails: {said['type']}: {said['message']}"[:300]})
         return
     report({"ok": True} | told)
-    started = time.monotonic()
-    for number, options in enumerate(variations):
-        if number >= needed and time.monotonic() - started > budget:
-            break
+    for options in variations:
         measured: Json = {"ok": False}
         for choice, dimensions in enumerate(options):
             measured = {"choice": choice} | _measured(script, {**part, "dimensions": dimensions})

@@ -35,13 +35,13 @@ from articad.plan.resolve import ResolvedPart
 
 __all__ = ["PartTree", "part_tree"]
 
-RECIPE: Final = 3  # increased when trees are made or judged differently, so that cached ones are made again
+RECIPE: Final = 4  # increased when trees are made or judged differently, so that cached ones are made again
 SAME: Final = 1e-6  # relative difference of volumes, areas and inertias; of centres in terms of the part's size
 MAX_TREE_BYTES: Final = 64 * 2**20
 _UNITS: Final = {"mm³": "mm3", "mm²": "mm2", "mm": "mm", "mm⁵": "mm5"}
 _PROGRAM: Final = Path(__file__).parent / "inside_freecad" / "tree.py"
 _SECONDS: Final = 240.0
-_BUDGET: Final = 15.0  # seconds of FreeCAD, and of the script, after which no more dimensions are changed alone
+_ALONE: Final = 12  # dimensions that are changed alone, besides counts; all are changed together
 _STEPS: Final = ((-0.05, -0.02, -0.004), (0.07, 0.02, 0.004))  # relative changes down and up, the first that the script builds
 _ZERO_STEPS: Final = ((0.5, 0.1), (0.7, 0.1))  # changes of a dimension that is zero [mm, deg]
 
@@ -121,16 +121,16 @@ class _Maker:
     def _judged(self) -> Json:
         counts = [name for name, value in self._dimensions.items() if isinstance(value, int)]
         free = [name for name in self._dimensions if name not in counts]
-        owners = [*counts, *free]
+        owners = [*counts, *free[:_ALONE]]
         alone = [_moves(name, self._dimensions[name], up=place % 2 == 0) for place, name in enumerate(owners)]
         together = self._together(free)
         tried = [*together, *([{**self._dimensions, name: value} for value in values] for name, values in zip(owners, alone, strict=True))]
-        trace, script = self._traced(tried, needed=len(together) + len(counts))
-        made, nominal, varied = self._in_freecad(trace, script, needed=len(together) + len(counts))
+        trace, script = self._traced(tried)
+        made, nominal, varied = self._in_freecad(trace, script)
         if wrong := _difference(nominal, script[0], nominal, script[0]):
             raise NoTreeError(f"its features give another solid: {wrong}")
         fixed: dict[str, str] = {}
-        for owner, mine, theirs in zip(owners, varied[len(together) :], script[1 + len(together) :], strict=False):
+        for owner, mine, theirs in zip(owners, varied[len(together) :], script[1 + len(together) :], strict=True):
             if not theirs["ok"]:
                 fixed[owner] = "the script builds no part with another value near it"
             elif wrong := _difference(mine, theirs, nominal, script[0]):
@@ -140,8 +140,8 @@ class _Maker:
         live = [name for name in free if name not in fixed]
         if live != free:
             together = self._together(live)
-            trace, script = self._traced(together, needed=len(together))
-            made, nominal, varied = self._in_freecad(trace, script, needed=len(together))
+            trace, script = self._traced(together)
+            made, nominal, varied = self._in_freecad(trace, script)
         for mine, theirs in zip(varied[: len(together)], script[1 : 1 + len(together)], strict=True):
             if theirs["ok"] and (wrong := _difference(mine, theirs, nominal, script[0])):
                 raise NoTreeError(f"its features do not follow several dimensions at once: {wrong}")
@@ -172,34 +172,31 @@ class _Maker:
             for row in signs
         ]
 
-    def _traced(self, tried: list[list[Json]], needed: int) -> tuple[Json, list[Json]]:
-        """Return the trace, and the solid's measures: first unchanged, then at the first buildable of each list of dimensions.
-
-        The first `needed` are always there; others may be missing at the end where time is over.
-        """
+    def _traced(self, tried: list[list[Json]]) -> tuple[Json, list[Json]]:
+        """Return the trace, and the solid's measures: first unchanged, then at the first buildable of each list of dimensions."""
         limits = replace(self._kernel.limits, seconds=self._kernel.limits.seconds + self._kernel.limits.probe_seconds, probe_seconds=0.0)
         variations = [[self._dimensions], *tried]
-        job = {"script": self._source, "part": self._brief, "variations": variations, "needed": needed + 1, "budget": _BUDGET}
+        job = {"script": self._source, "part": self._brief, "variations": variations}
         lines = self._kernel.run_task("trace", job, limits)
         if not lines:
             raise NoTreeError("its script ends the process when it is traced")
         if lines[0].get("ok") is not True:
             raise NoTreeError(scrubbed(lines[0].get("reason", "its script cannot be traced"), 300))
-        if not needed + 2 <= len(lines) <= len(tried) + 2:
+        if len(lines) != len(tried) + 2:
             raise NoTreeError("its script takes too long to be run at other dimensions")
         measured = [_measures(line) for line in lines[1:]]
-        for line, options in zip(measured, variations, strict=False):
+        for line, options in zip(measured, variations, strict=True):
             if line["ok"]:
                 line["dimensions"] = options[line["choice"]]
         if not measured[0]["ok"]:
             raise NoTreeError("its script builds no valid solid")
         return lines[0], measured
 
-    def _in_freecad(self, trace: Json, script: list[Json], needed: int) -> tuple[bytes, Json, list[Json]]:
+    def _in_freecad(self, trace: Json, script: list[Json]) -> tuple[bytes, Json, list[Json]]:
         """Return the document that FreeCAD makes, the measures of its solid, and those at each variation."""
         job = tree_objects(trace.get("rows"), trace.get("formulas"), self._dimensions, self._source.splitlines())
         changes = [_changed(self._dimensions, row["dimensions"]) if row["ok"] else {} for row in script[1:]]
-        job |= {"dimensions": self._dimensions, "variations": changes, "needed": needed, "budget": _BUDGET}
+        job |= {"dimensions": self._dimensions, "variations": changes}
         with self._kernel.job_folder() as folder:
             (folder / "job.json").write_text(json.dumps(job))
             ended = self._freecad.run(_PROGRAM, folder=folder, limits=FreeCADLimits(seconds=_SECONDS))
