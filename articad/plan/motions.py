@@ -176,6 +176,8 @@ def _check_degrees(limits: Sequence[float], path: str, evaluation: Evaluation, *
 
 def _is_round_in_radians(size: float) -> bool:
     """Return whether an angle is uneven in degrees, but a multiple of 15° if it was given in radians, such as 62.83: ten turns."""
+    if not math.isfinite(size):
+        return False
     meant = math.degrees(size)
     is_even = abs(size * 2 - round(size * 2)) < _EVEN_DEG
     return not is_even and abs(meant - _STEP_DEG * round(meant / _STEP_DEG)) < _TYPED_DEG
