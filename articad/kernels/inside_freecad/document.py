@@ -248,11 +248,8 @@ class _Writer:
             import Materials  # noqa: PLC0415 - reads the whole library
 
             shape.ShapeMaterial = Materials.MaterialManager().getMaterial(part["card"])
-            for item in (
-                shape,
-                *getattr(shape, "Group", ()),
-            ):  # a material changes no shape, and computed again it may differ in its last bits
-                item.purgeTouched()
+            for touched in (shape, *getattr(shape, "Group", ())):  # computed again, a shape may differ in its last bits
+                touched.purgeTouched()
         if mass["density"] is not None and hasattr(shape, "Shape"):
             _number(item, "ArticadDensity", mass["density"] * 1e-9, "articad", _DENSITY, live=False, kind="Density")  # kg/mm³
             _number(item, "ArticadMass", mass["kg"], "articad", "Volume times density", live=False, kind="Mass")
