@@ -8,14 +8,13 @@ cannot read those of 1.1.
 from __future__ import annotations
 
 import json
-import re
-import zipfile
 from pathlib import Path
 from typing import Any
 
 import FreeCAD as App
 import JointObject
 import Part
+from numbered import FIRST_OF_ASSEMBLY, numbered_document  # type: ignore[import-not-found]
 
 Json = dict[str, Any]
 
@@ -23,7 +22,6 @@ _KINDS = {"mm": "Distance", "deg": "Angle", "1": "Float"}  # FreeCAD's propertie
 _OWN_COLUMNS = ("Index", "Name", "Quantity")  # of a bill of materials
 _DENSITY = "Density of the material when articad wrote the document"
 _FIXED_MASS = "Mass when articad wrote the document; it does not follow the shape"
-FIRST_ID = 100_000  # beyond 5000, the end of FreeCAD's own random start
 
 
 def main() -> None:
@@ -42,7 +40,7 @@ def placement(numbers: list[float]) -> Any:
 class _Writer:
     def __init__(self, job: Json) -> None:
         self.job = job
-        self.document = _numbered_from(FIRST_ID)
+        self.document = numbered_document(str(Path("seed.FCStd").resolve()), "fresh", "Parameters", FIRST_OF_ASSEMBLY)
         self.document.Label = job["name"]
         self.document.UndoMode = 0
         self.parts: dict[str, Any] = {}  # part -> its object in the assembly
@@ -312,25 +310,6 @@ class _Writer:
     def _touch_nothing(self) -> None:
         for item in self.document.Objects:
             item.purgeTouched()
-
-
-def _numbered_from(first: int) -> Any:
-    """Return a document whose objects are numbered from `first`, with a VarSet `Parameters`.
-
-    FreeCAD starts at a random number and names edges and faces by it; a document that is opened continues with its own.
-    """
-    seed = Path("seed.FCStd").resolve()
-    fresh = App.newDocument("fresh")
-    fresh.addObject("App::VarSet", "Parameters")
-    fresh.saveAs(str(seed))
-    App.closeDocument(fresh.Name)
-    with zipfile.ZipFile(seed) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    files["Document.xml"] = re.sub(rb'(name="Parameters" id=")\d+', rb"\g<1>%d" % first, files["Document.xml"])
-    with zipfile.ZipFile(seed, "w") as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    return App.openDocument(str(seed))
 
 
 def _switch_off(joint: Any) -> None:

@@ -12,7 +12,6 @@ import math
 import os
 import re
 import traceback
-import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,10 +20,10 @@ from typing import Any
 import FreeCAD as App
 import Part
 import Sketcher
+from numbered import FIRST_OF_PART, numbered_document  # type: ignore[import-not-found]
 
 FILE = "part.py"  # the file name of a script's code: tracebacks are cut down to it
 SAVED = "/tmp/part.FCStd"  # noqa: S108 - private to this process
-FIRST_ID = 10_000  # beyond 5000, the end of FreeCAD's own random start
 _PLANES = {"XY": "XY_Plane", "XZ": "XZ_Plane", "YZ": "YZ_Plane"}
 _AXES = {"X": "X_Axis", "Y": "Y_Axis", "Z": "Z_Axis"}
 _SIDES = {"X": App.Vector(1, 0, 0), "Y": App.Vector(0, 1, 0), "Z": App.Vector(0, 0, 1)}
@@ -400,7 +399,7 @@ def main(job: int, report: int, document: int) -> None:
 
 
 def _built(script: str, brief: Json) -> dict[str, Json]:
-    document = _numbered_from(FIRST_ID)
+    document = numbered_document(SAVED, "part", "Dimensions", FIRST_OF_PART)
     document.UndoMode = 0
     values = document.getObject("Dimensions")
     for name, value in brief["dimensions"].items():
@@ -424,24 +423,6 @@ def _built(script: str, brief: Json) -> dict[str, Json]:
     connectors = _connectors(entries)
     document.saveAs(SAVED)
     return connectors
-
-
-def _numbered_from(first: int) -> Any:
-    """Return a document whose objects are numbered from `first`, with a VarSet `Dimensions`.
-
-    FreeCAD starts at a random number and names edges and faces by it; a document that is opened continues with its own.
-    """
-    fresh = App.newDocument("part")
-    fresh.addObject("App::VarSet", "Dimensions")
-    fresh.saveAs(SAVED)
-    App.closeDocument(fresh.Name)
-    with zipfile.ZipFile(SAVED) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    files["Document.xml"] = re.sub(rb'(name="Dimensions" id=")\d+', rb"\g<1>%d" % first, files["Document.xml"])
-    with zipfile.ZipFile(SAVED, "w") as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    return App.openDocument(SAVED)
 
 
 def _connectors(entries: Any) -> dict[str, Json]:

@@ -8,17 +8,15 @@ that the part looks like one whose script was written for FreeCAD.
 from __future__ import annotations
 
 import json
-import re
-import zipfile
 from pathlib import Path
 from typing import Any
 
 import FreeCAD as App
 import Part
+from numbered import FIRST_OF_PART, numbered_document  # type: ignore[import-not-found]
 
 Json = dict[str, Any]
 
-FIRST_ID = 10_000  # beyond 5000, the end of FreeCAD's own random start
 NEAR_MM = 1e-4  # by which the centre of an edge may differ between two kernels that place a seam differently
 
 
@@ -38,7 +36,7 @@ def main() -> None:
 
 
 def _made(job: Json) -> Json:
-    document = _numbered_from(FIRST_ID)
+    document = numbered_document(str(Path("seed.FCStd").resolve()), "part", "Dimensions", FIRST_OF_PART)
     document.UndoMode = 0
     values = document.getObject("Dimensions")
     for name, value in job["dimensions"].items():
@@ -128,25 +126,6 @@ def _measured(document: Any, body: Any) -> Json:
         "inertia_mm5": [[getattr(inertia, f"A{row}{column}") for column in (1, 2, 3)] for row in (1, 2, 3)],
         "faces": len(solid.removeSplitter().Faces),
     }
-
-
-def _numbered_from(first: int) -> Any:
-    """Return a document whose objects are numbered from `first`, with a VarSet `Dimensions`.
-
-    FreeCAD starts at a random number and names edges and faces by it; a document that is opened continues with its own.
-    """
-    seed = Path("seed.FCStd").resolve()
-    fresh = App.newDocument("part")
-    fresh.addObject("App::VarSet", "Dimensions")
-    fresh.saveAs(str(seed))
-    App.closeDocument(fresh.Name)
-    with zipfile.ZipFile(seed) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    files["Document.xml"] = re.sub(rb'(name="Dimensions" id=")\d+', rb"\g<1>%d" % first, files["Document.xml"])
-    with zipfile.ZipFile(seed, "w") as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    return App.openDocument(str(seed))
 
 
 _ = Part  # makes FreeCAD load the types of objects
