@@ -548,7 +548,7 @@ class Assembly:
         poses = Poses(self.mechanism.parts, self.mechanism.at_rest)
         scene = self.scene()
         made = check_joints(scene, poses, reached=followed(self.mechanism), joints=joints)
-        if joints is not None or not self.mechanism.couplings:
+        if joints is not None:
             return made
         return replace(made, findings=made.findings + Findings(lost_meshes(scene, self.mechanism)))
 

@@ -1,8 +1,7 @@
 """Evidence: the measurements of an assembly, made before any model is asked how it looks.
 
 First the rest pose; if it has no fault, the declared fits, each joint through its range with the others at rest, and the surfaces that
-make the joints. Every verdict says
-how strong it is, and every finding names its root cause if geometry shows it.
+make the joints. Every verdict says how strong it is, and every finding names its root cause if geometry shows it.
 """
 
 from __future__ import annotations

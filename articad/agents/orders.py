@@ -1,11 +1,15 @@
 """Who made a fault between parts: a script that departs from its order, or the plan that ordered it.
 
-Decided by proof, from the bores, pins, sockets and balls of joints and from the probe of dimensions. A script departs if a dimension of its
-part has no effect, if it alone has nothing round about the axis of a joint or has its bore or pin beside it, if a bore or pin that makes a joint has a diameter that none
-of its dimensions states, or if such a bore is closed at a depth that they do not give. What else is wrong about
-such a part may follow from that, so it waits for the script. A hole or slot that is absent from a script that follows its order was not
-ordered: the plan is wrong. It is wrong as well if a fit is off by just what both surfaces differ, and both have the diameters that were
-ordered, or if its gap is a clearance that the plan states. All faults of two parts go to the same author. Everything else stays open.
+Decided by proof, from the bores, pins, sockets and balls of joints and from the probe of dimensions. A script departs
+
+- if a dimension of its part has no effect;
+- if its part alone has nothing round about the axis of a joint, or has its bore or pin beside it;
+- if a bore or pin that makes a joint has a diameter that none of its dimensions states;
+- if such a bore is closed at a depth that its dimensions do not give.
+
+What else is wrong about such a part may follow from that, so it waits for the script. The plan is wrong if a hole or slot is absent from a
+script that follows its order, if a fit is off by just what both surfaces differ and both have the diameters that were ordered, or if its
+gap is a clearance that the plan states. All faults of two parts go to the same author. Everything else stays open.
 """
 
 from __future__ import annotations
@@ -14,19 +18,18 @@ import itertools
 import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 
-from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.geometry.faces import Face
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.resolve import ResolvedPlan
-from articad.realisation.bores import TILT
-from articad.realisation.sides import sides
+from articad.realisation.bores import TILT, along, beside
+from articad.realisation.sides import Sides, sides
 
 __all__ = ["HELD", "addressed", "source_of"]
 
@@ -62,10 +65,22 @@ class _Round(NamedTuple):
     off: float
     depth: float | None
 
+
+class _Joined(NamedTuple):
+    """A joint with the faces of both sides, and its bores with their pins or sockets with their balls."""
+
+    joint: Joint
+    sides: Sides
+    fits: tuple[tuple[_Round, _Round], ...]
+
+    @classmethod
+    def of(cls, scene: Scene, joint: Joint) -> Self:
+        both = sides(scene, joint)
+        return cls(joint, both, tuple(_mating(both)))
+
     @property
-    def hollow(self) -> bool:
-        """Whether it goes around the other."""
-        return self.what in ("bore", "socket")
+    def parts(self) -> frozenset[str]:
+        return frozenset({self.joint.parent, self.joint.child})
 
 
 def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene) -> Findings:
@@ -81,10 +96,9 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene) -> 
     pairs = {frozenset(finding.parts) for finding in several if finding.code in _CODES and len(finding.parts) == 2}
     if assembly.resolved is None or not pairs:
         return Findings(several)
-    joints = [joint for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
-    surfaces = {joint.name: _mating(scene, joint) for joint in joints}
-    departed = _departed(assembly, assembly.resolved, scene, joints, surfaces)
-    ordered = {frozenset({joint.parent, joint.child}) for joint in joints if any(_explains(surfaces[joint.name], one) for one in several)}
+    joined = [_Joined.of(scene, joint) for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
+    departed = _departed(assembly, assembly.resolved, joined)
+    ordered = {one.parts for one in joined if any(_explains(one, finding) for finding in several)}
     ordered |= {frozenset(one.parts) for one in several if one.cause in _CUT or _is_clearance(one, assembly.resolved)}
     return Findings(
         _addressed(finding, between.get(finding.where, finding.parts), assembly.resolved, departed, ordered) for finding in several
@@ -98,27 +112,25 @@ def source_of(name: str, resolved: ResolvedPlan) -> str:
     return name
 
 
-def _departed(
-    assembly: Assembly, resolved: ResolvedPlan, scene: Scene, joints: Sequence[Joint], surfaces: Mapping[str, Sequence[_Round]]
-) -> dict[str, str]:
+def _departed(assembly: Assembly, resolved: ResolvedPlan, joined: Sequence[_Joined]) -> dict[str, str]:
     """Return why scripts depart from their orders, by the part that has the script."""
     found: dict[str, str] = {}
-    for source in sorted({source_of(name, resolved) for joint in joints for name in (joint.parent, joint.child)}):
+    for source in sorted({source_of(name, resolved) for one in joined for name in one.parts}):
         unused = assembly.realised[source].findings.of("W_DIMENSION_UNUSED")
         if unused:
             found[source] = f"{source} does not follow its dimension {unused[0].where.rsplit('.', 1)[-1]!r}."
-    for joint in joints:
-        for part, reason in _elsewhere(scene, joint) if not surfaces[joint.name] else ():
+    for one in joined:
+        for part, reason in _elsewhere(one) if not one.fits else ():
             source = source_of(part, resolved)
-            found.setdefault(source, f"{source} {reason} the axis of joint {joint.name!r}.")
-        for one in surfaces[joint.name]:
-            source = source_of(one.part, resolved)
+            found.setdefault(source, f"{source} {reason} the axis of joint {one.joint.name!r}.")
+        for surface in itertools.chain.from_iterable(one.fits):
+            source = source_of(surface.part, resolved)
             dimensions = resolved.parts[source].dimensions
-            which = f"The {one.what} of {source} in joint {joint.name!r}"
-            if not _is_stated(one, dimensions):
-                reason = f"{which} has a diameter of {one.diameter:.4g} mm, which none of its dimensions states."
-            elif one.depth is not None and not _is_given(one.depth, dimensions):
-                reason = f"{which} is {one.depth:.4g} mm deep, which its dimensions do not give."
+            which = f"The {surface.what} of {source} in joint {one.joint.name!r}"
+            if not _is_stated(surface, dimensions):
+                reason = f"{which} has a diameter of {surface.diameter:.4g} mm, which none of its dimensions states."
+            elif surface.depth is not None and not _is_given(surface.depth, dimensions):
+                reason = f"{which} is {surface.depth:.4g} mm deep, which its dimensions do not give."
             else:
                 continue
             found.setdefault(source, reason)
@@ -146,11 +158,11 @@ def _addressed(
     return replace(finding, route="design") if frozenset(parts) in ordered else finding
 
 
-def _explains(surfaces: Sequence[_Round], finding: Finding) -> bool:
+def _explains(joined: _Joined, finding: Finding) -> bool:
     """Return whether a fit is off by what a bore and its pin differ by, or because the pin is the thicker one."""
-    if finding.code not in _FITS or {one.part for one in surfaces}.isdisjoint(finding.parts):
+    if finding.code not in _FITS or frozenset(finding.parts) != joined.parts:
         return False
-    plays = [(bore.diameter - pin.diameter) / 2 for bore, pin in zip(surfaces[::2], surfaces[1::2], strict=True)]
+    plays = [(bore.diameter - pin.diameter) / 2 for bore, pin in joined.fits]
     return any(play < 0.0 or (finding.value is not None and abs(finding.value - play) < _PLAY_MM) for play in plays)
 
 
@@ -163,27 +175,23 @@ def _is_clearance(finding: Finding, resolved: ResolvedPlan) -> bool:
     return any(abs(finding.value - value) < _ROUNDING_MM for value in stated)
 
 
-def _mating(scene: Scene, joint: Joint) -> list[_Round]:
-    """Return the bores with their pins and the sockets with their balls, one on each side of a joint, nearly equal in size."""
-    both = sides(scene, joint)
-    found = []
+def _mating(both: Sides) -> Iterator[tuple[_Round, _Round]]:
+    """Yield each bore with its pin and each socket with its ball, one on each side of a joint, nearly equal in size."""
     for one, other in ((both.parent, both.child), (both.child, both.parent)):
         bores = [each for each in one if each.face.kind in _WORDS and each.face.hollow]
         pins = [each for each in other if each.face.kind in _WORDS and not each.face.hollow]
         for (part, bore), (against, pin) in itertools.product(bores, pins):
             if abs(bore.radius - pin.radius) <= _ALIKE * max(bore.radius, pin.radius) and _goes_into(pin, bore):
-                words = _WORDS[bore.kind]
+                around, inside = _WORDS[bore.kind]
                 depth = _depth(bore, [each.face for each in one if each.part == part])
-                found.append(_Round(part, words[0], 2 * bore.radius, bore.off, depth))
-                found.append(_Round(against, words[1], 2 * pin.radius, pin.off, None))
-    return found
+                yield _Round(part, around, 2 * bore.radius, bore.off, depth), _Round(against, inside, 2 * pin.radius, pin.off, None)
 
 
-def _elsewhere(scene: Scene, joint: Joint) -> Iterator[tuple[str, str]]:
+def _elsewhere(joined: _Joined) -> Iterator[tuple[str, str]]:
     """Yield the part of a joint about an axis that has nothing round about it, or its bore or pin beside it, and which of these."""
+    joint, both = joined.joint, joined.sides
     if joint.type not in _ABOUT_AXIS:
         return
-    both = sides(scene, joint)
     several = ((joint.parent, both.parent, both.child), (joint.child, both.child, both.parent))
     bare = [part for part, own, _ in several if not any(_is_about(one.face) for one in own)]
     if len(bare) == 1:
@@ -192,13 +200,9 @@ def _elsewhere(scene: Scene, joint: Joint) -> Iterator[tuple[str, str]]:
     for part, own, other in several:
         about = [one.face for one in other if one.face.kind == "cylinder" and _is_about(one.face)]
         for face in (one.face for one in own if one.part == part and one.face.kind == "cylinder" and not _is_about(one.face)):
-            beside = float(np.linalg.norm(np.cross(face.point, face.axis)))
-            if (
-                np.hypot(face.axis[0], face.axis[1]) < TILT
-                and beside < _BESIDE * 2 * face.radius
-                and any(_suits(face, one) for one in about)
-            ):
-                yield part, f"has its {_WORDS['cylinder'][not face.hollow]} of {2 * face.radius:.4g} mm {beside:.3g} mm beside"
+            distance = beside(face)
+            if distance < _BESIDE * 2 * face.radius and any(_suits(face, one) for one in about):
+                yield part, f"has its {_WORDS['cylinder'][not face.hollow]} of {2 * face.radius:.4g} mm {distance:.3g} mm beside"
                 return
 
 
@@ -210,11 +214,7 @@ def _suits(face: Face, other: Face) -> bool:
 
 def _is_about(face: Face) -> bool:
     """Return whether a face is a cylinder about the z axis, or a curved face whose kind is not known."""
-    if face.kind == "other":
-        return True
-    if face.kind != "cylinder" or np.hypot(face.axis[0], face.axis[1]) > TILT:
-        return False
-    return float(np.linalg.norm(np.cross(face.point, face.axis))) < _ON_AXIS_MM
+    return face.kind == "other" or (face.kind == "cylinder" and beside(face) < _ON_AXIS_MM)
 
 
 def _goes_into(pin: Face, bore: Face) -> bool:
@@ -226,20 +226,15 @@ def _goes_into(pin: Face, bore: Face) -> bool:
         return float(np.linalg.norm(between)) < _ON_AXIS_MM
     if np.linalg.norm(np.cross(pin.axis, bore.axis)) > TILT or np.linalg.norm(np.cross(between, bore.axis)) > _ON_AXIS_MM:
         return False
-    (low, high), (start, end) = (_extent(face, bore.axis) for face in (bore, pin))
+    (low, high), (start, end) = (along(face, bore.axis) for face in (bore, pin))
     return min(high, end) > max(low, start)
-
-
-def _extent(face: Face, axis: FloatArray) -> tuple[float, float]:
-    heights = face.corners @ axis
-    return float(heights.min()), float(heights.max())
 
 
 def _depth(bore: Face, faces: Iterable[Face]) -> float | None:
     """Return the depth of a bore that a floor closes at one end [mm], else None."""
     if bore.kind != "cylinder":
         return None
-    low, high = _extent(bore, bore.axis)
+    low, high = along(bore, bore.axis)
     for face in faces:
         if face.kind == "plane" and np.linalg.norm(np.cross(face.axis, bore.axis)) < TILT:
             height = float(face.point @ bore.axis)

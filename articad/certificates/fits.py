@@ -20,7 +20,6 @@ from articad.certificates.claims import Claim
 from articad.certificates.proof import NO_SHRINK, Prover, Shrink
 from articad.errors import PlanError
 from articad.findings import Finding, Findings
-from articad.findings.codes import CODES
 from articad.interference.freedoms import Freedom, freedoms, scattered, travels
 from articad.interference.gauge import STOP_MM, Gauge
 from articad.interference.motion import Route
@@ -394,7 +393,7 @@ class _Held:
             value=value,
             limit=limit,
             unit="mm",
-            route="design" if where else CODES[code].route,  # a fit that holds at rest and not in motion has a wrong range
+            route="design" if where else None,  # a fit that holds at rest and not in motion has a wrong range
             pose=where,
         )
 

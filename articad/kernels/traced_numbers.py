@@ -83,9 +83,18 @@ def _simplified(name: str, first: Any, second: Any) -> Any:
 
 
 class _Arithmetic:
-    """Operators that compute as the plain numbers do, and record the operation."""
+    """Operators that compute as the plain numbers of a subclass do, and record the operation."""
 
     formula: Formula
+
+    def __new__(cls, value: float, formula: Formula) -> Self:
+        """Make a number."""
+        made = super().__new__(cls, value)  # type: ignore[call-arg]  # of float or int, which a subclass adds
+        made.formula = formula
+        return made
+
+    def __deepcopy__(self, _: Any) -> Self:
+        return self
 
     def __pos__(self) -> Any:
         return self
@@ -124,31 +133,9 @@ for _word, _operation_of_one in (("neg", lambda a: -a), ("abs", builtins.abs), (
 class TracedFloat(_Arithmetic, float):  # the operators above come first
     """A float with its formula."""
 
-    def __new__(cls, value: float, formula: Formula) -> Self:
-        """Make a float."""
-        made = float.__new__(cls, value)
-        made.formula = formula
-        return made
-
-    __hash__ = float.__hash__
-
-    def __deepcopy__(self, _: Any) -> TracedFloat:
-        return self
-
 
 class TracedInt(_Arithmetic, int):
     """A whole number with its formula; as the length of a range it is plain."""
-
-    def __new__(cls, value: int, formula: Formula) -> Self:
-        """Make a whole number."""
-        made = int.__new__(cls, value)
-        made.formula = formula
-        return made
-
-    __hash__ = int.__hash__
-
-    def __deepcopy__(self, _: Any) -> TracedInt:
-        return self
 
 
 _FUNCTIONS: Final = {

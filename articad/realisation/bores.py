@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
+from articad.arrays import FloatArray
 from articad.geometry.faces import Face
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.realisation.sides import sides
 
-__all__ = ["TILT", "Bore", "along", "at_height", "bore_of", "offset"]
+__all__ = ["TILT", "Bore", "along", "at_height", "beside", "bore_of", "offset"]
 
+_Z = np.array([0.0, 0.0, 1.0])
 TILT = 1e-3  # rad: axes that differ by less are parallel
 _TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.SLIDER)
 
@@ -55,10 +58,17 @@ def bore_of(scene: Scene, joint: Joint) -> Bore | None:
     return min(found, key=lambda one: abs(one.play), default=None)
 
 
-def along(face: Face) -> tuple[float, float]:
-    """Return the extent of a face along z [mm]."""
-    heights = face.corners[..., 2]
+def along(face: Face, axis: FloatArray = _Z) -> tuple[float, float]:
+    """Return the extent of a face along an axis, z by default [mm]."""
+    heights = face.corners @ axis
     return float(heights.min()), float(heights.max())
+
+
+def beside(face: Face) -> float:
+    """Return the distance of a cylinder's axis from the z axis in its middle [mm]; infinity if they are not parallel."""
+    if np.hypot(face.axis[0], face.axis[1]) > TILT:
+        return math.inf
+    return float(np.linalg.norm(at_height(face, sum(along(face)) / 2)))
 
 
 def offset(a: Face, b: Face) -> float:
@@ -74,6 +84,4 @@ def at_height(face: Face, height: float) -> np.ndarray[tuple[int, ...], np.dtype
 
 def _is_about_axis(face: Face) -> bool:
     """Return whether a face is a cylinder parallel to z that the z axis passes through."""
-    if face.kind != "cylinder" or np.hypot(face.axis[0], face.axis[1]) > TILT:
-        return False
-    return float(np.linalg.norm(at_height(face, sum(along(face)) / 2))) < face.radius
+    return face.kind == "cylinder" and beside(face) < face.radius

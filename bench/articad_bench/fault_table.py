@@ -13,6 +13,7 @@ __all__ = ["SCHEMA", "alarms_line", "page", "report", "rows_of"]
 
 SCHEMA: Final = "articad.bench-faults/1"
 _STAGES: Final = ("plan", "build", "evidence", "sampled")
+_COLUMNS: Final = ("cases", "same", "valid", *_STAGES, "escaped", "named", "addressed")
 
 _ABOUT: Final = """\
 # Planted faults
@@ -84,7 +85,7 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
         kinds: All kinds, in the order of the table.
     """
     rows = rows_of(told)
-    heads = ("", "cases", "same", "valid", *_STAGES, "escaped", "named", "addressed")
+    heads = ("", *_COLUMNS)
     lines = [
         _ABOUT,
         f"{len(rows)} of {told['planned']} cases were tried.",
@@ -124,8 +125,7 @@ def _first(row: Row) -> str:
 
 
 def _line(name: str, counts: Mapping[str, int]) -> tuple[str, ...]:
-    keys = ("cases", "same", "valid", *_STAGES, "escaped", "named", "addressed")
-    return (name, *(str(counts[key] or "") for key in keys))
+    return (name, *(str(counts[key] or "") for key in _COLUMNS))
 
 
 def _share(counts: Mapping[str, int], key: str) -> str:

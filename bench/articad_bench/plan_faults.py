@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -465,12 +464,10 @@ def _other_sign(coupling: Json) -> None:
         coupling["internal"] = not coupling.get("internal", False)
 
 
-def _kind(name: str, meaning: str, causes: frozenset[str], sites: Callable[..., Iterator[Site]], *given: Any) -> Kind:
-    return Kind(name, "plan", meaning, FORM | causes, partial(sites, *given))
-
-
-def _misplaced(name: str, meaning: str, causes: frozenset[str], sites: Callable[..., Iterator[Site]], *given: Any) -> Kind:
-    return replace(_kind(name, meaning, causes, sites, *given), misplaces=True)
+def _kind(
+    name: str, meaning: str, causes: frozenset[str], sites: Callable[..., Iterator[Site]], *given: Any, misplaces: bool = False
+) -> Kind:
+    return Kind(name, "plan", meaning, FORM | causes, partial(sites, *given), misplaces)
 
 
 PLAN_KINDS: Final = (
@@ -484,19 +481,29 @@ PLAN_KINDS: Final = (
     _kind("pin_thick", "a pin, shaft or tongue × 1.25", _SIZED, _scaled, 1.25, _THICK),
     _kind("wall_thin", "a wall or board of 0.01 mm", _SIZED, _set_to, 0.01, _WALL),
     _kind("size_negative", "a dimension with the wrong sign", _SIZED, _scaled, -1.0, ()),
-    _misplaced("envelope_turned", "x and z of an envelope exchanged", SIZE, _envelope),
-    _misplaced("axis_reversed", "z of a connector reversed", _PLACED | LIMITS, _connector, "z reversed", _reversed),
-    _misplaced(
-        "axis_turned", "axes of a connector exchanged", _PLACED | COUPLED | {"E_AXIS_PARALLEL"}, _connector, "axes exchanged", _cycled
+    _kind("envelope_turned", "x and z of an envelope exchanged", SIZE, _envelope, misplaces=True),
+    _kind("axis_reversed", "z of a connector reversed", _PLACED | LIMITS, _connector, "z reversed", _reversed, misplaces=True),
+    _kind(
+        "axis_turned",
+        "axes of a connector exchanged",
+        _PLACED | COUPLED | {"E_AXIS_PARALLEL"},
+        _connector,
+        "axes exchanged",
+        _cycled,
+        misplaces=True,
     ),
-    _misplaced("roll_turned", "x of a connector turned by 90°", _PLACED, _rolled),
-    _misplaced("origin_off_1", "a connector off by 1 mm", _PLACED, _connector, "1 mm off", partial(_shifted, 1.0)),
-    _misplaced("origin_off_5", "a connector off by 5 mm", _PLACED, _connector, "5 mm off", partial(_shifted, 5.0)),
-    _misplaced("origin_off_50", "a connector off by 50 mm", _PLACED, _connector, "50 mm off", partial(_shifted, 50.0)),
-    _misplaced("joint_off_1", "both connectors of a joint off by 1 mm", _PLACED, _joint_axis, "1 mm off", partial(_shifted, 1.0)),
-    _misplaced("joint_off_5", "both connectors of a joint off by 5 mm", _PLACED, _joint_axis, "5 mm off", partial(_shifted, 5.0)),
-    _misplaced("joint_reversed", "both z of a joint reversed", _PLACED | LIMITS, _joint_axis, "z reversed", _reversed),
-    _misplaced("joint_turned", "both axes of a joint exchanged", _PLACED | COUPLED, _joint_axis, "axes exchanged", _cycled),
+    _kind("roll_turned", "x of a connector turned by 90°", _PLACED, _rolled, misplaces=True),
+    _kind("origin_off_1", "a connector off by 1 mm", _PLACED, _connector, "1 mm off", partial(_shifted, 1.0), misplaces=True),
+    _kind("origin_off_5", "a connector off by 5 mm", _PLACED, _connector, "5 mm off", partial(_shifted, 5.0), misplaces=True),
+    _kind("origin_off_50", "a connector off by 50 mm", _PLACED, _connector, "50 mm off", partial(_shifted, 50.0), misplaces=True),
+    _kind(
+        "joint_off_1", "both connectors of a joint off by 1 mm", _PLACED, _joint_axis, "1 mm off", partial(_shifted, 1.0), misplaces=True
+    ),
+    _kind(
+        "joint_off_5", "both connectors of a joint off by 5 mm", _PLACED, _joint_axis, "5 mm off", partial(_shifted, 5.0), misplaces=True
+    ),
+    _kind("joint_reversed", "both z of a joint reversed", _PLACED | LIMITS, _joint_axis, "z reversed", _reversed, misplaces=True),
+    _kind("joint_turned", "both axes of a joint exchanged", _PLACED | COUPLED, _joint_axis, "axes exchanged", _cycled, misplaces=True),
     _kind("pose_off", "a part 5 mm off at rest", _PLACED, _pose, 5.0),
     _kind("mirror_plane", "a mirror plane with another normal", _PLACED | {"E_DERIVE_JOINT"}, _mirror_plane),
     _kind("copy_place", "a copy on the other side", _PLACED, _copy_place),
