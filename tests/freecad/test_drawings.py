@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from lxml import etree
 
+import articad as ac
 from articad import cli
 from articad.errors import ExportError, KernelUnavailableError
 from articad.export.bundle import Bundle
@@ -68,6 +69,19 @@ def test_each_part_has_a_page_with_the_dimensions_of_the_plan() -> None:
             )
     assert sorted(rows["Text"] for kind, rows in held if kind == "TechDraw::DrawViewBalloon") == [str(n) for n in range(1, len(pages))]
     assert sum(kind == "TechDraw::DrawViewSpreadsheet" for kind, _ in held) == 1
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+def test_a_circle_is_not_named_after_a_length_that_is_equal_to_its_radius() -> None:
+    """The crank's spigot is 6 mm long, and its shaft has a radius of 6 mm."""
+    folder = Path(__file__).resolve().parents[2] / "examples" / "four_bar"
+    bundle = write_freecad(ac.build(ac.AssemblyPlan.load(folder / "plan.json"), folder / "parts"), drawings=True)
+    kinds = [(rows["FormatSpec"], kind) for kind, rows in objects(bundle.files[bundle.main]) if kind == "TechDraw::DrawViewDimension"]
+    round_ones = [text for text, _ in kinds if text.startswith(("R", "\u2300"))]
+    assert any("shaft_radius" in text for text in round_ones)
+    assert not [text for text in round_ones if "length" in text or "thickness" in text]
+    assert not [text for text, _ in kinds if text not in round_ones and "radius" in text]
 
 
 @pytest.mark.freecad

@@ -9,6 +9,7 @@ from __future__ import annotations
 import builtins
 import json
 import math
+import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -30,6 +31,8 @@ _COARSE = 0.5  # mm
 _MOST = 12  # dimensions of a page
 _WIDTHS = (45, 130, 60, 110, 80)  # pixels of the columns of a parts list
 _CIRCLE = "Part::GeomCircle"
+_OF_CIRCLE = re.compile(r"radius|diameter")  # names of dimensions that no straight edge has
+_OF_EDGE = re.compile(r"length|depth|height|width|thick|play|clearance|gap|span|pitch|_[xyz]$")  # and those that no circle has
 
 
 def main() -> None:
@@ -195,33 +198,38 @@ class _Drawing:
     def _dimensions(self, form: Json, shape: Any) -> Iterator[tuple[str, str, list[str], float, str]]:
         """Yield the dimensions of a page: the view, FreeCAD's kind, elements of the shape, the value and the name in the plan.
 
-        The overall sizes first, where vertices are that far apart; then the dimensions of the plan that a circle or an edge has.
+        The overall sizes first, where vertices are that far apart; then the dimensions of the plan that a circle or an edge has. Equal numbers are
+        not enough: a length is not that of a circle, a radius not that of an edge, and a circle or edge has one dimension.
         """
-        names, told = dict(form["dimensions"]), 0
+        names, told, taken = dict(form["dimensions"]), 0, set()
         box = shape.optimalBoundingBox(False)
         low, high = (box.XMin, box.YMin, box.ZMin), (box.XMax, box.YMax, box.ZMax)
         for axis, view, kind in ((0, "front", "DistanceX"), (2, "front", "DistanceY"), (1, "top", "DistanceY")):
             ends = _ends(shape, axis, low[axis], high[axis])
             if ends is not None:
                 size = high[axis] - low[axis]
-                name = next((key for key, value in names.items() if abs(value - size) < _SAME), "")
+                name = next((key for key, value in names.items() if abs(value - size) < _SAME and not _OF_CIRCLE.search(key)), "")
                 names.pop(name, None)
                 told += 1
                 yield view, kind, list(ends), size, name
         circles, edges = list(_circles(shape)), list(_straight(shape))
         for name, value in names.items():
-            found = next((row for row in circles if abs(row[2] - value) < _SAME or abs(2 * row[2] - value) < _SAME), None)
+            round_ones = (row for row in circles if abs(row[2] - value) < _SAME or abs(2 * row[2] - value) < _SAME)
+            found = None if _OF_EDGE.search(name) else next((row for row in round_ones if row[1] not in taken), None)
             if told >= _MOST or value <= 0.0:
                 return
             if found is not None:
                 view, element, radius = found
                 kind = "Radius" if abs(radius - value) < _SAME else "Diameter"
                 told += 1
+                taken.add(element)
                 yield view, kind, [element], value, name
                 continue
-            edge = next((row for row in edges if abs(row[3] - value) < _SAME), None)
+            straight = (row for row in edges if abs(row[3] - value) < _SAME and row[2] not in taken)
+            edge = None if _OF_CIRCLE.search(name) else next(straight, None)
             if edge is not None:
                 told += 1
+                taken.add(edge[2])
                 yield edge[0], edge[1], [edge[2]], value, name
 
     # ------------------------------------------------------------------ the exploded view
