@@ -295,7 +295,7 @@ def test_every_fixed_package_is_declared_and_imported(distribution: str, module:
 
 def test_every_import_is_declared() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    extras = (line for extra in ("render", "faiss", "mcp", "batch", "xacro") for line in project["optional-dependencies"][extra])
+    extras = (line for extra in ("render", "faiss", "mcp", "batch", "xacro", "papers") for line in project["optional-dependencies"][extra])
     declared = [*project["dependencies"], *extras]
     names = {re.split(r"[^A-Za-z0-9_-]", line, maxsplit=1)[0] for line in declared}
     module_of = FIXED | {"pillow": "PIL", "faiss-cpu": "faiss"}

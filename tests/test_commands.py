@@ -429,3 +429,14 @@ def test_a_print_pack_is_held_to_the_process_it_is_meant_for(tmp_path: Path, rep
 def test_at_a_terminal_somebody_is_asked_which_idea_to_make(flags: list[str], asked: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
     assert models._is_asked(cli._parsed(["generate", "a toy for two", *flags])) is asked
+
+
+def test_the_parts_list_weighs_what_the_run_weighs(chest: Path, tmp_path: Path, report: Any) -> None:
+    _, built = report("build", chest, "--out", tmp_path / "run", "--no-pictures", "--export", "plan")
+    before = Run.view(tmp_path / "run").hashes()
+    code, bill = report("bom", tmp_path / "run", "--purchased", "lid", "--out", tmp_path / "papers")
+    assert (code, bill["schema"], [row["supply"] for row in bill["items"]]) == (0, "articad.bom/1", ["made", "purchased"])
+    assert bill["mass_kg"] == pytest.approx(built["assembly"]["mass_kg"], rel=1e-12)
+    assert sum(row["total_kg"] for row in bill["items"]) == pytest.approx(built["assembly"]["mass_kg"], rel=1e-12)
+    assert json.loads((tmp_path / "papers" / "chest_bom.json").read_text())["items"] == bill["items"]
+    assert Run.view(tmp_path / "run").hashes() == before

@@ -16,6 +16,7 @@ from articad.commands import (  # noqa: F401 - registers them
     files,
     machine,
     models,
+    papers,
     parts,
     pictures,
     proving,

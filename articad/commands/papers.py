@@ -1,0 +1,145 @@
+"""Write the papers that a workshop needs: the parts list and the cut list."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from articad.commands.command import argument, closest, command
+from articad.commands.options import SANDBOX, amount, names
+from articad.commands.steps import loaded
+
+if TYPE_CHECKING:
+    from articad.commands.terminal import Report, Terminal
+
+BILLS: Final = ("csv", "json", "xlsx")
+PURCHASED = argument("--purchased", metavar="NAMES", type=names, default=(), help="parts that are bought; * and ? are wildcards")
+PAPERS_OUT = argument("--out", metavar="DIR", default="papers", help="where to write (papers)")
+
+
+def bills(text: str) -> tuple[str, ...]:
+    """Read `csv,xlsx`."""
+    chosen = names(text)
+    for name in chosen:
+        if name not in BILLS:
+            raise argparse.ArgumentTypeError(f"unknown format {name!r}{closest(name, BILLS)}; there are {', '.join(BILLS)}")
+    return chosen
+
+
+def rectangle(text: str) -> tuple[float, float]:
+    """Read `2440x1220`: two positive lengths."""
+    first, sign, second = text.lower().partition("x")
+    if not sign:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 2440x1220")
+    return amount(first), amount(second)
+
+
+def _kerf(text: str) -> float:
+    try:
+        return 0.0 if float(text) == 0.0 else amount(text)
+    except ValueError:
+        return amount(text)
+
+
+@command(
+    "bom",
+    "Write the parts list of a run, a plan or a file: items, quantities, materials, masses and sizes; with --cuts also a cut list.",
+    argument("target", metavar="RUN|PLAN_DIR|FILE"),
+    argument("--to", metavar="FORMATS", dest="bills", type=bills, default=("csv", "json"), help="csv, json, xlsx (csv,json)"),
+    PURCHASED,
+    argument("--cuts", action="store_true", help="also write a cut list: parts that are boards, placed on sheets"),
+    argument(
+        "--sheet", metavar="LxW", type=rectangle, default=(2440.0, 1220.0), help="size of a sheet in mm, first along the grain (2440x1220)"
+    ),
+    argument("--kerf", metavar="MM", type=_kerf, default=3.2, help="width of a saw cut (3.2)"),
+    argument("--turn", action="store_true", help="let boards lie across the grain"),
+    PAPERS_OUT,
+    SANDBOX,
+)
+def _bom(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.papers.bill import COLUMNS, bill_json, bill_xlsx, rows_of, written_csv
+    from articad.papers.items import items_of
+    from articad.runs.run import write_atomically
+
+    assembly = loaded(options.target, options, terminal)
+    items = items_of(assembly, options.purchased)
+    report = bill_json(assembly, items)
+    files: dict[str, bytes] = {}
+    if options.cuts:
+        report["cuts"], text, table = _cut_list(assembly, items, options)
+        files |= {f"{assembly.name}_cuts.txt": text.encode(), f"{assembly.name}_cuts.csv": table}
+    for name in options.bills:
+        files[f"{assembly.name}_bom.{name}"] = (
+            bill_xlsx(assembly, items)
+            if name == "xlsx"
+            else written_csv(COLUMNS, rows_of(items))
+            if name == "csv"
+            else (json.dumps(report, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+        )
+    for name, content in files.items():
+        write_atomically(Path(options.out) / name, content)
+    terminal.table(
+        ("item", "name", "quantity", "material", "kg", "kg in all", "x × y × z, mm"),
+        [
+            (
+                i.number,
+                i.name,
+                i.quantity,
+                i.material or "-",
+                _kg(i.mass_kg),
+                _kg(i.total_kg),
+                " × ".join(f"{s:.5g}" for s in i.size_mm or ()),
+            )
+            for i in items
+        ],
+        right=(0, 2, 4, 5),
+    )
+    unknown = report["without_mass"]
+    terminal.say(
+        f"{assembly.name}: {report['parts']} parts, {len(items)} items, {report['mass_kg']:.4g} kg"
+        + (f" without {', '.join(unknown)}, whose mass is not known." if unknown else ".")
+    )
+    if options.cuts:
+        terminal.say(text)
+    for name in files:
+        terminal.say(str(Path(options.out) / name))
+    return report | {"files": [str(Path(options.out) / name) for name in files]}
+
+
+def _cut_list(assembly: Any, items: Any, options: argparse.Namespace) -> tuple[Report, str, bytes]:
+    """Return the cut list as a report, as text and as a table."""
+    from articad.papers.bill import written_csv
+    from articad.papers.boards import boards_of, cut_list_json, nested
+
+    boards = boards_of(assembly, items)
+    sheets, large = nested(boards, options.sheet, kerf_mm=options.kerf, turn=options.turn)
+    report = cut_list_json(boards, sheets, large, kerf_mm=options.kerf)
+    lines = [f"Cut list: {sum(board.item.quantity for board in boards)} boards, kerf {options.kerf:g} mm, length along the grain."]
+    for board in boards:
+        size = f"{board.length_mm:.5g} × {board.width_mm:.5g} × {board.thickness_mm:.5g} mm"
+        lines.append(f"  {board.item.quantity} × item {board.item.number} {board.item.name}: {size}, {board.item.material or '-'}")
+    for number, sheet in enumerate(sheets, start=1):
+        what = f"{sheet.material or '-'}, {sheet.thickness_mm:g} mm, {sheet.size_mm[0]:g} × {sheet.size_mm[1]:g} mm"
+        lines.append(f"Sheet {number}: {what}, {100 * sheet.used:.0f} % used")
+        for cut in sheet.cuts:
+            at = f"{cut.along:.5g} × {cut.across:.5g} mm at ({cut.x:.5g}, {cut.y:.5g})"
+            lines.append(f"  item {cut.board.item.number} {cut.board.item.name}: {at}")
+    lines += [f"Larger than a sheet: item {board.item.number} {board.item.name}" for board in large]
+    header = ("sheet", "material", "thickness_mm", "item", "name", "along_mm", "across_mm", "x_mm", "y_mm")
+    rows = [
+        (n, sheet.material, sheet.thickness_mm, cut.board.item.number, cut.board.item.name, cut.along, cut.across, cut.x, cut.y)
+        for n, sheet in enumerate(sheets, start=1)
+        for cut in sheet.cuts
+    ]
+    unplaced = [
+        (None, board.item.material, board.thickness_mm, board.item.number, board.item.name, board.length_mm, board.width_mm, None, None)
+        for board in large
+        for _ in range(board.item.quantity)
+    ]
+    return report, "\n".join(lines), written_csv(header, [*rows, *unplaced])
+
+
+def _kg(mass: float | None) -> str:
+    return "-" if mass is None else f"{mass:.4g}"

@@ -1,0 +1,121 @@
+"""The parts list: each part once, masses that add up to the product's, and the same numbers in every format."""
+
+from __future__ import annotations
+
+import csv
+import io
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+from articad.assembly import Assembly
+from articad.connectors.se3 import SE3
+from articad.errors import ArticadError
+from articad.kinematics import declare
+from articad.papers.bill import COLUMNS, bill_json, bill_xlsx, rows_of, written_csv
+from articad.papers.boards import Board, boards_of, nested
+from articad.papers.items import items_of
+from tests.assemblies import block, frame
+
+ORIGIN = frame()
+
+
+def shelf() -> Assembly:
+    """A side board that carries three shelves, two of them equal, and a peg."""
+    side = block("side", (400, 18, 900), **dict.fromkeys("abcd", ORIGIN))
+    shelves = [
+        block("low", (380, 300, 18), root=ORIGIN),
+        block("middle", (18, 300, 380), root=ORIGIN),
+        block("top", (390, 300, 18), root=ORIGIN),
+    ]
+    peg = block("=peg", (8, 8, 30), root=ORIGIN)
+    parts = [side, *(replace(part, material="birch") for part in shelves), replace(peg, material="steel")]
+    joints = [declare.fixed(part.name.strip("="), side[key], part["root"]) for key, part in zip("abcd", parts[1:], strict=True)]
+    return Assembly.from_parts("shelf", parts=parts, joints=joints, ground="side", T_ground=SE3.identity())
+
+
+def test_each_part_is_counted_once_and_the_masses_add_up() -> None:
+    assembly = shelf()
+    items = items_of(assembly)
+    assert [item.parts for item in items] == [("side",), ("low", "middle"), ("top",), ("=peg",)]
+    assert sorted(name for item in items for name in item.parts) == sorted(assembly.parts)
+    total = assembly.mass().mass
+    report = bill_json(assembly, items)
+    assert report["mass_kg"] == pytest.approx(total, rel=1e-12)
+    assert sum(row["total_kg"] for row in report["items"]) == pytest.approx(total, rel=1e-12)
+    assert [row["item"] for row in report["items"]] == [1, 2, 3, 4]
+
+
+def test_one_shape_of_two_materials_is_two_items() -> None:
+    assembly = shelf()
+    parts = {name: replace(part, material="oak") if name == "low" else part for name, part in assembly.parts.items()}
+    assert [item.parts for item in items_of(replace(assembly, parts=parts))] == [("side",), ("low",), ("middle",), ("top",), ("=peg",)]
+
+
+def test_bought_parts_are_named_by_the_user_and_a_name_of_no_part_is_refused() -> None:
+    assert [item.supply for item in items_of(shelf(), ["*peg"])] == ["made", "made", "made", "purchased"]
+    with pytest.raises(ArticadError, match="no part has this name"):
+        items_of(shelf(), ["lo"])
+
+
+def test_csv_and_xlsx_hold_the_same_cells_and_compute_nothing_that_a_name_says() -> None:
+    pytest.importorskip("xlsxwriter")
+    assembly = shelf()
+    items = items_of(assembly)
+    table = list(csv.reader(io.StringIO(written_csv(COLUMNS, rows_of(items)).decode())))
+    assert table[0] == list(COLUMNS)
+    assert [row[1] for row in table[1:]] == ["side", "low", "top", "'=peg"]
+
+    content = bill_xlsx(assembly, items)
+    assert content == bill_xlsx(assembly, items)
+    with zipfile.ZipFile(io.BytesIO(content)) as book:
+        sheet = etree.fromstring(book.read("xl/worksheets/sheet1.xml"))
+        strings = ["".join(entry.itertext()) for entry in etree.fromstring(book.read("xl/sharedStrings.xml"))]
+    space = {"s": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
+    formulas = [cell.text for cell in sheet.iterfind(".//s:f", space)]
+    assert formulas == ["SUM(C2:C5)", "SUM(F2:F5)"]
+    values = {
+        cell.get("r"): (
+            strings[int(cell.findtext("s:v", namespaces=space))] if cell.get("t") == "s" else float(cell.findtext("s:v", namespaces=space))
+        )
+        for cell in sheet.iterfind(".//s:c", space)
+        if cell.find("s:v", space) is not None
+    }
+    assert values["B5"] == "=peg"
+    assert values["F6"] == pytest.approx(assembly.mass().mass)
+    assert [values[f"C{row}"] for row in range(2, 6)] == [float(row[2]) for row in table[1:]]
+
+
+def test_boards_lie_on_sheets_without_overlap_one_kerf_apart_and_along_the_grain() -> None:
+    pytest.importorskip("rectpack")
+    assembly = shelf()
+    boards = boards_of(assembly, items_of(assembly))
+    assert [(board.item.name, board.length_mm, board.width_mm, board.thickness_mm) for board in boards] == [
+        ("side", 900, 400, 18), ("low", 380, 300, 18), ("top", 390, 300, 18),
+    ]  # fmt: skip
+    many = [Board(replace(board.item, parts=board.item.parts * 5), *(board.length_mm, board.width_mm, 18.0)) for board in boards]
+    sheets, large = nested(many, (1000.0, 850.0), kerf_mm=4.0)
+    assert not large
+    assert sum(len(sheet.cuts) for sheet in sheets) == sum(board.item.quantity for board in many)
+    for sheet in sheets:
+        for index, cut in enumerate(sheet.cuts):
+            assert (cut.along, cut.across) == pytest.approx((cut.board.length_mm, cut.board.width_mm))
+            assert min(cut.x, cut.y) >= 0
+            assert cut.x + cut.along <= 1000 + 1e-9
+            assert cut.y + cut.across <= 850 + 1e-9
+            for other in sheet.cuts[:index]:
+                gaps = (
+                    max(cut.x - other.x - other.along, other.x - cut.x - cut.along),
+                    max(cut.y - other.y - other.across, other.y - cut.y - cut.across),
+                )
+                assert max(gaps) >= 4.0 - 1e-9
+    assert [board.item.name for board in nested(boards, (850.0, 500.0), kerf_mm=4.0)[1]] == ["side"]
+    assert not nested(boards, (410.0, 910.0), kerf_mm=4.0, turn=True)[1]
+
+
+def test_a_block_and_a_cylinder_are_no_boards(tmp_path: Path) -> None:
+    blocks = Assembly.from_parts("one", parts=[block("cube", (50, 60, 40))], joints=[], ground="cube")
+    assert boards_of(blocks, items_of(blocks)) == ()
