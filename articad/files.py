@@ -2,7 +2,8 @@
 
 A path that the user names may be a link; a path below a folder that the user names may not lead out of it. With `root`, each component
 below the root is opened by itself without following links, so nothing can be exchanged between a check and a read. `ARTICAD_ROOT` in the
-environment is such a root for all untrusted files that a process reads: the MCP server sets it.
+environment is such a root for all untrusted files that a process reads: the MCP server sets it. It does not apply to what confined
+processes leave in private folders (`read_left`).
 
 Every refusal is an `OSError` with its reason in `strerror`, like those of the operating system. Standard library only.
 """
@@ -44,7 +45,26 @@ def read_file(path: str | Path, most: int, *, root: str | Path | None = None) ->
         UnsafeFileError: If it is not a regular file, is larger, or a link leads to it.
         OSError: If it is missing or cannot be read.
     """
-    file = open_file(path, root=root)
+    return _content(open_file(path, root=root), path, most)
+
+
+def read_left(path: str | Path, most: int) -> bytes:
+    """Return the content of a file that a confined process left in a private folder of this process; `ARTICAD_ROOT` does not apply to it.
+
+    Args:
+        path: The file; a link is refused.
+        most: The largest size that is read [bytes].
+
+    Raises:
+        UnsafeFileError: If it is not a regular file, is larger, or is a link.
+        OSError: If it is missing or cannot be read.
+    """
+    path = Path(path)
+    return _content(_regular(_opened_below(path.parent, path), path), path, most)
+
+
+def _content(file: int, path: str | Path, most: int) -> bytes:
+    """Return what an open file holds, and close it."""
     try:
         size = os.fstat(file).st_size
         if size > most:
@@ -71,7 +91,11 @@ def open_file(path: str | Path, *, root: str | Path | None = None) -> int:
     root = _root_of(path, root)
     if "\0" in str(path):
         raise _refused("", "its name has a zero byte")
-    file = os.open(path, _FILE) if root is None else _opened_below(Path(root), path)
+    return _regular(os.open(path, _FILE) if root is None else _opened_below(Path(root), path), path)
+
+
+def _regular(file: int, path: Path) -> int:
+    """Return an open file if it is a regular one; else close it and refuse it."""
     try:
         is_regular = stat.S_ISREG(os.fstat(file).st_mode)
     except BaseException:

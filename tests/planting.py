@@ -13,7 +13,7 @@ def planted(folder: Path) -> Path:
     names = {name for name in {*sys.stdlib_module_names, *metadata.packages_distributions()} if name.isidentifier()}
     names |= {"articad", "sitecustomize", "usercustomize", "pyvista", "pybullet", "distributed", "mcp"}
     user = folder / ".local" / "lib" / f"python{sys.version_info.major}.{sys.version_info.minor}" / "site-packages"
-    user.mkdir(parents=True)
+    user.mkdir(parents=True, exist_ok=True)
     text = f"with open({str(mark)!r}, 'a') as mark:\n    mark.write(__file__ + chr(10))\nraise ImportError('planted')\n"
     for place in (folder, user):
         for name in sorted(names):

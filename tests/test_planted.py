@@ -71,10 +71,10 @@ def stranger(tmp_path: Path) -> Path:
     return folder
 
 
-def variables(folder: Path) -> dict[str, str]:
-    """Return an environment whose home and temporary files are in a folder."""
+def variables(folder: Path, temporary: Path | None = None) -> dict[str, str]:
+    """Return an environment whose home, and temporary files unless they have a folder of their own, are in a folder."""
     kept = {name: os.environ[name] for name in ("PATH", "LANG", "ARTICAD_SANDBOX") if name in os.environ}
-    return kept | {"HOME": str(folder), "TMPDIR": str(folder), "OPENAI_API_KEY": "key", "OPENBLAS_NUM_THREADS": "1"}
+    return kept | {"HOME": str(folder), "TMPDIR": str(temporary or folder), "OPENAI_API_KEY": "key", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def marks(folder: Path) -> str:
@@ -115,7 +115,10 @@ def test_neither_models_nor_the_page_server_run_what_a_stranger_planted(stranger
 
 
 @pytest.mark.slow
-def test_no_tool_runs_what_a_stranger_planted_in_the_root(stranger: Path) -> None:
+def test_no_tool_runs_what_a_stranger_planted_in_the_root_or_among_temporary_files(stranger: Path) -> None:
+    """Temporary files are outside the root, as usual: no tool takes its own for files that lead out of the root."""
+    temporary = stranger.with_name("temporary")
+    planted(temporary)
     subprocess.run([*ARTICAD, "new", "product"], cwd=stranger, env=variables(stranger), check=True, timeout=300)
     calls: dict[str, dict[str, Any]] = {
         "schema": {"topic": "plan"},
@@ -140,13 +143,13 @@ def test_no_tool_runs_what_a_stranger_planted_in_the_root(stranger: Path) -> Non
 
     async def session() -> None:
         server = StdioServerParameters(
-            command=ARTICAD[0], args=[*ARTICAD[1:], "mcp", "--root", str(stranger)], env=variables(stranger), cwd=stranger
+            command=ARTICAD[0], args=[*ARTICAD[1:], "mcp", "--root", str(stranger)], env=variables(stranger, temporary), cwd=stranger
         )
         async with Client(stdio_client(server)) as client:
             assert {tool.name for tool in (await client.list_tools()).tools} == set(calls)
             for name, arguments in calls.items():
                 answer = await client.call_tool(name, arguments)
-                assert marks(stranger) == "", name
+                assert marks(stranger) == marks(temporary) == "", name
                 assert not answer.is_error, (name, answer.content)
 
     finish(session())

@@ -28,7 +28,7 @@ from articad.export.freecad_split import content_of_files
 from articad.export.freecad_split import split as divided
 from articad.export.losses import refuse
 from articad.export.product import of_the_product
-from articad.files import RECORD_BYTES, read_file
+from articad.files import RECORD_BYTES, read_left
 from articad.findings import Finding, Findings
 from articad.kernels import freecad_install
 from articad.kernels.build123d import Build123dKernel
@@ -94,9 +94,9 @@ def write_freecad(
         ended = freecad.run(PROGRAM, folder=folder, limits=FreeCADLimits(seconds=seconds))
         if not ended.ok or not (folder / "report.json").is_file():
             raise _failed(ended.said, late=ended.late)
-        report = json.loads(read_file(folder / "report.json", RECORD_BYTES, root=folder))
+        report = json.loads(read_left(folder / "report.json", RECORD_BYTES))
         drawn = _drawn(assembly, content_of_job, folder, freecad) if drawings else {"hidden": [], "providers": {}}
-        content = read_file(folder / "assembly.FCStd", RECORD_BYTES, root=folder)
+        content = read_left(folder / "assembly.FCStd", RECORD_BYTES)
     hidden = (*report["hidden"], *drawn["hidden"])
     look = Appearance(report["colors"], hidden, tuple(report["joints"]), report["grounded"], tuple(report["tips"]), drawn["providers"])
     files = _files(job.name, content, look, split=split)
@@ -113,7 +113,7 @@ def _drawn(assembly: Assembly, job: Json, folder: Path, freecad: FreeCAD) -> Jso
     ended = freecad.run(PROGRAM.with_name("drawings.py"), folder=folder, limits=limits, layers=WITH_THREADS)
     if not ended.ok or not (folder / "drawn.json").is_file():
         raise _failed(ended.said, late=ended.late)
-    report: Json = json.loads(read_file(folder / "drawn.json", RECORD_BYTES, root=folder))
+    report: Json = json.loads(read_left(folder / "drawn.json", RECORD_BYTES))
     return report
 
 

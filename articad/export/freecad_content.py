@@ -65,6 +65,7 @@ _NOT_COMPARED = {  # compared elsewhere, derived by FreeCAD, or articad's own
 }  # fmt: skip
 _BILL = "Assembly::BomObject"  # a sheet that FreeCAD fills in
 _NUMBERS = ("Float", "Integer")  # tags of XML that hold one
+_DEEPEST = 4  # lists in lists of a value
 
 Json = dict[str, Any]
 Content = dict[str, Json]
@@ -112,9 +113,23 @@ def unpacked_content(text: str) -> Content | None:
 
 
 def _is_object(held: Any) -> bool:
-    return isinstance(held, dict) and all(
+    if not isinstance(held, dict) or not all(
         isinstance(held.get(key), kind) for key, kind in (("type", str), ("label", str), ("expressions", dict), ("values", dict))
+    ):
+        return False
+    members = held["values"].get("Group", [])
+    return (
+        isinstance(members, list)
+        and all(isinstance(member, str) for member in members)
+        and all(isinstance(text, str) for text in held["expressions"].values())
+        and all(map(_is_value, held["values"].values()))
     )
+
+
+def _is_value(value: Any, depth: int = _DEEPEST) -> bool:
+    if isinstance(value, list):
+        return depth > 0 and all(_is_value(entry, depth - 1) for entry in value)
+    return value is None or isinstance(value, (str, float)) or (isinstance(value, int) and abs(value) < 2**63)
 
 
 def _expressions(row: Any) -> dict[str, str]:

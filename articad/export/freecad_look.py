@@ -18,7 +18,7 @@ import numpy as np
 from articad.aliases import Json
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
-from articad.files import RECORD_BYTES, read_file
+from articad.files import RECORD_BYTES, read_left
 from articad.findings import Finding, Findings
 from articad.geometry.part import Part
 from articad.kernels import freecad_install, sandbox
@@ -87,7 +87,7 @@ def looked(content: bytes | Mapping[str, bytes], freecad: FreeCAD, *, parts: int
         ended = freecad.run(PROGRAM, folder=folder, limits=limits, layers=WITH_THREADS if drawn else sandbox.LAYERS)
         if not (folder / "report.json").is_file():
             raise OSError("it ran out of time" if ended.late else last_words(ended.said))
-        report: Json = json.loads(read_file(folder / "report.json", RECORD_BYTES, root=folder))
+        report: Json = json.loads(read_left(folder / "report.json", RECORD_BYTES))
     (step,) = report["steps"]
     return dict(step)
 

@@ -125,7 +125,7 @@ def read_document(path: str | Path) -> EditedDocument:
     model = _Model(LinkedDocuments(Path(path), None), 0.01, metadata=True)
     parts = {item.name: given for item in model.members if (given := item.text("ArticadPart"))}
     joints = {item.name: given for item in model.joint_items() if (given := item.text("ArticadJoint"))}
-    before = {record["name"]: record["color"] for record in _records(model) if record["kind"] == "part"}
+    before = {record["name"]: record.get("color") for record in _records(model) if record["kind"] == "part"}
     now = {given: model.color(name) for given, name in model.recorded.items()} if model.records else {}
     colors = {name: color for name, color in now.items() if color is not None and color != before.get(name)}
     return EditedDocument(None if model.written is None else model.edits, model.written or {}, model.now, parts, joints, colors)
@@ -795,8 +795,32 @@ def _rescaled(model: _Model, item: FreeCADObject | None) -> float:
 
 
 def _records(model: _Model) -> list[dict[str, Any]]:
-    """Return articad's records in a document; none of one made by hand."""
-    return read_records(model.records.split("\n"), model.path) if model.records else []
+    """Return articad's records in a document; none of one made by hand.
+
+    Raises:
+        ReadError: If one of a part has no name, or its size is not what articad writes.
+    """
+    records = read_records(model.records.split("\n"), model.path) if model.records else []
+    for record in records:
+        sized = [(record[what], what) for what in ("solid", "drawn") if isinstance(record.get(what), dict)]
+        if record["kind"] == "part" and not (isinstance(record.get("name"), str) and all(_is_size(*size) for size in sized)):
+            raise unreadable(model.path, "articad metadata", "The record of a part has no name, or numbers that are none.")
+    return records
+
+
+def _is_size(size: Mapping[str, Any], what: str) -> bool:
+    """Return whether a record has a volume and a centre, and of a solid its moments."""
+    try:
+        volume, com = float(size["volume"]), np.asarray(size["com"], dtype=np.float64)
+        inertia = np.asarray(size["inertia"] if what == "solid" else np.eye(3), dtype=np.float64)
+    except (KeyError, TypeError, ValueError, OverflowError):
+        return False
+    return (
+        (volume > 0 or what == "drawn")
+        and com.shape == (3,)
+        and inertia.shape == (3, 3)
+        and bool(np.isfinite([volume, *com, *inertia.flat]).all())
+    )
 
 
 def _recorded(records: list[dict[str, Any]], what: str) -> dict[str, dict[str, Any]]:

@@ -117,7 +117,7 @@ def compiled_mjcf(path: Path, root: Path) -> Compiled:
         if ended.late:
             raise unreadable(path, "", f"MuJoCo's compiler did not end within {SECONDS:g} s.")
         try:
-            data = files.read_file(Path(folder) / _FILE, _MOST)
+            data = files.read_left(Path(folder) / _FILE, _MOST)
         except OSError:
             raise unreadable(path, "", f"MuJoCo's compiler ended with {ended.how}: {ended.last_line}") from None
     return _read(data, path)

@@ -128,6 +128,8 @@ def _part(record: Record, folder: Folder) -> Part:
     where = f"parts.{record['name']}"
 
     def mesh(file: str | None) -> TriMesh | None:
+        if not isinstance(file, str | None):
+            raise TypeError("a mesh is not the name of a file")
         return None if file is None else folder.mesh(file, _UNIT, where)
 
     def shapes(rows: list[Record]) -> tuple[Shape, ...]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from articad.aliases import Json
 from articad.errors import InvalidSolidError
-from articad.files import UnsafeFileError, read_file
+from articad.files import UnsafeFileError, read_left
 from articad.geometry.mesh import TriMesh
 
 REPORT_BYTES = 2**20
@@ -139,7 +139,7 @@ def read_bytes(path: Path, limit: int = MESH_BYTES) -> bytes:
         PoisonedError: If it is larger than the limit [bytes].
     """
     try:
-        return read_file(path, limit)
+        return read_left(path, limit)
     except UnsafeFileError as error:
         raise PoisonedError(f"{path.name}: {error.strerror}") from None
 

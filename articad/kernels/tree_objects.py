@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
@@ -137,7 +136,9 @@ class _Objects:
 
     def add(self, place: int, row: Json) -> None:
         """Add the objects of an operation."""
-        kind, operands = str(row.get("kind")), row.get("operands")
+        kind, operands = row.get("kind"), row.get("operands")
+        if not isinstance(kind, str):
+            raise PoisonedError("an operation has no kind")
         if not isinstance(operands, list) or not all(type(operand) is int and 0 <= operand < place for operand in operands):
             raise PoisonedError("an operation has the wrong operands")
         if len(operands) < _OPERANDS.get(kind, 0):
@@ -274,7 +275,7 @@ class _Objects:
             axes = "; ".join(map(self._vector, (x, y, z)))
             form["expressions"]["Placement"] = f"placement({self._vector(at)}; create(<<rotation>>; {axes}; <<ZXY>>))"
             return
-        R = np.array(turn, dtype=np.float64)
+        R = np.array([[_finite(number) for number in line] for line in turn])
         if not np.allclose(R @ R.T, np.eye(3), atol=1e-9) or np.linalg.det(R) < 0:
             raise PoisonedError("a place is not a rotation")
         quaternion = [float(number) for number in SE3.from_rotation(R).data[3:]]
@@ -298,6 +299,6 @@ def _listed(value: Any) -> list[Any]:
 
 
 def _finite(value: Any) -> float:
-    if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value) or abs(value) > 1e9:
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or not abs(value) <= 1e9:
         raise PoisonedError("the trace has a number that is none")
     return float(value)

@@ -21,6 +21,7 @@ import numpy as np
 
 from articad.aliases import Json
 from articad.connectors.se3 import SE3
+from articad.files import UnsafeFileError, read_left
 from articad.findings import Finding
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.cache import BuildCache
@@ -29,7 +30,7 @@ from articad.kernels.failures import scrubbed
 from articad.kernels.freecad_file import settled
 from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
 from articad.kernels.kernel import SEATED_MM, SEATED_RAD, BuiltPart
-from articad.kernels.results import PoisonedError, numbers
+from articad.kernels.results import PoisonedError, number, numbers
 from articad.kernels.tree_objects import tree_objects
 from articad.plan.resolve import ResolvedPart
 
@@ -38,6 +39,7 @@ __all__ = ["PartTree", "part_tree"]
 RECIPE: Final = 4  # increased when trees are made or judged differently, so that cached ones are made again
 SAME: Final = 1e-6  # relative difference of volumes, areas and inertias; of centres in terms of the part's size
 MAX_TREE_BYTES: Final = 64 * 2**20
+_REPORT_BYTES: Final = 16 * 2**20
 _UNITS: Final = {"mm³": "mm3", "mm²": "mm2", "mm": "mm", "mm⁵": "mm5"}
 _PROGRAM: Final = Path(__file__).parent / "inside_freecad" / "tree.py"
 _SECONDS: Final = 240.0
@@ -126,6 +128,7 @@ class _Maker:
         together = self._together(free)
         tried = [*together, *([{**self._dimensions, name: value} for value in values] for name, values in zip(owners, alone, strict=True))]
         trace, script = self._traced(tried)
+        connectors = self._connectors(trace)
         made, nominal, varied = self._in_freecad(trace, script)
         if wrong := _difference(nominal, script[0], nominal, script[0]):
             raise NoTreeError(f"its features give another solid: {wrong}")
@@ -146,7 +149,7 @@ class _Maker:
             if theirs["ok"] and (wrong := _difference(mine, theirs, nominal, script[0])):
                 raise NoTreeError(f"its features do not follow several dimensions at once: {wrong}")
         (self._folder / "part.FCStd").write_bytes(settled(made))
-        return {"reason": "", "fixed": fixed, "connectors": trace["connectors"], "nominal": nominal}
+        return {"reason": "", "fixed": fixed, "connectors": connectors, "nominal": nominal}
 
     def _why(self, dimension: str, wrong: str) -> str:
         if isinstance(self._dimensions[dimension], int):
@@ -181,16 +184,30 @@ class _Maker:
         if not lines:
             raise NoTreeError("its script ends the process when it is traced")
         if lines[0].get("ok") is not True:
-            raise NoTreeError(scrubbed(lines[0].get("reason", "its script cannot be traced"), 300))
+            reason = lines[0].get("reason")
+            raise NoTreeError(scrubbed(reason, 300) if isinstance(reason, str) else "its script cannot be traced")
         if len(lines) != len(tried) + 2:
             raise NoTreeError("its script takes too long to be run at other dimensions")
         measured = [_measures(line) for line in lines[1:]]
         for line, options in zip(measured, variations, strict=True):
             if line["ok"]:
+                if line["choice"] >= len(options):
+                    raise PoisonedError("a measure belongs to dimensions that were not asked for")
                 line["dimensions"] = options[line["choice"]]
         if not measured[0]["ok"]:
             raise NoTreeError("its script builds no valid solid")
         return lines[0], measured
+
+    def _connectors(self, trace: Json) -> Json:
+        """Return the planned connectors of a trace, each with three numbers for every axis that it states.
+
+        Raises:
+            PoisonedError: If they have another form.
+        """
+        told: Any = trace.get("connectors")
+        ignored: list[Finding] = []
+        names = read_connectors(self._brief, told, ignored)
+        return {name: {axis: told[name][axis] for axis in ("o", "z", "x") if told[name].get(axis) is not None} for name in names}
 
     def _in_freecad(self, trace: Json, script: list[Json]) -> tuple[bytes, Json, list[Json]]:
         """Return the document that FreeCAD makes, the measures of its solid, and those at each variation."""
@@ -202,12 +219,13 @@ class _Maker:
             ended = self._freecad.run(_PROGRAM, folder=folder, limits=FreeCADLimits(seconds=_SECONDS))
             if not ended.ok or not (folder / "report.json").is_file():
                 raise NoTreeError("FreeCAD takes too long over its features" if ended.late else "FreeCAD fails on its features")
-            report = json.loads((folder / "report.json").read_text())
+            report = json.loads(read_left(folder / "report.json", _REPORT_BYTES))
             if "problem" in report:
                 raise NoTreeError(scrubbed(report["problem"], 300))
-            content = (folder / "part.FCStd").read_bytes()
-        if len(content) > MAX_TREE_BYTES:
-            raise NoTreeError("its document is too large")
+            try:
+                content = read_left(folder / "part.FCStd", MAX_TREE_BYTES)
+            except UnsafeFileError as error:
+                raise NoTreeError(f"its document cannot be read: {error.strerror}") from None
         nominal, again = report["nominal"], report["again"]
         if not nominal.get("ok") or not again.get("ok") or _difference(again, nominal, nominal, nominal):
             raise NoTreeError("FreeCAD's features do not come back to the solid they started from")
@@ -238,15 +256,15 @@ def _measures(line: Json) -> Json:
     """Return the validated measures of a solid at one variation."""
     if line.get("ok") is not True:
         return {"ok": False}
-    faces, choice = line.get("faces"), line.get("choice")
-    if type(faces) is not int or type(choice) is not int or not 0 <= choice < 4:
+    faces, choice, volume, area = line.get("faces"), line.get("choice"), number(line.get("volume_mm3")), number(line.get("area_mm2"))
+    if type(faces) is not int or type(choice) is not int or choice < 0 or volume <= 0 or area <= 0:
         raise PoisonedError("a measure has the wrong form")
     return {
         "ok": True,
         "choice": choice,
         "faces": faces,
-        "volume_mm3": float(numbers(line.get("volume_mm3"))),
-        "area_mm2": float(numbers(line.get("area_mm2"))),
+        "volume_mm3": volume,
+        "area_mm2": area,
         "com_mm": numbers(line.get("com_mm"), 3).tolist(),
         "inertia_mm5": numbers(line.get("inertia_mm5"), 3, 3).tolist(),
     }

@@ -100,7 +100,8 @@ class Tools:
         folder = self.bench.design(design)
         if script is not None:
             self.bench.write_script(design, part, script, kernel)
-        report = await self.bench.run("part", str(folder), part, "--kernel", kernel, seconds=_PART_S, tell=_teller(context))
+        words = [str(folder), self.bench.part(part)]
+        report = await self.bench.run("part", f"--kernel={kernel}", on=words, seconds=_PART_S, tell=_teller(context))
         return condensed(answers.tidied(report), detail=detail, keep=("volume_mm3", "mass_kg", "bbox_mm"))
 
     async def build_parts(
@@ -125,7 +126,7 @@ class Tools:
                 self.bench.write_script(design, name, script, kernel)
                 names.append(name)
         seconds = _PART_S + _MORE_PARTS_S * len(names or self.bench.parts(design))
-        report = await self.bench.run("part", str(folder), *names, "--kernel", kernel, seconds=seconds, tell=_teller(context))
+        report = await self.bench.run("part", f"--kernel={kernel}", on=[str(folder), *names], seconds=seconds, tell=_teller(context))
         return condensed(report if detail else report | {"parts": answers.solids(report)}, detail=detail, keep=("parts",))
 
     async def build(self, context: Context, design: Design, kernel: Dialect = "build123d", detail: Detail = False) -> Json:
@@ -139,7 +140,7 @@ class Tools:
 
     async def check(self, context: Context, design: Design, detail: Detail = False) -> Json:
         """Check interference at rest again, pair by pair."""
-        report = await self.bench.run("check", str(self.bench.target(design)), seconds=_BUILD_S, tell=_teller(context))
+        report = await self.bench.run("check", on=[str(self.bench.target(design))], seconds=_BUILD_S, tell=_teller(context))
         return condensed(report, detail=detail)
 
     async def certify(
@@ -148,20 +149,20 @@ class Tools:
         design: Design,
         joints: Sequence[str] = (),
         pairs: bool = True,
-        budget_s: float = 120.0,
+        budget_s: Annotated[float, Field(gt=0, le=3600)] = 120.0,
         detail: Detail = False,
     ) -> Json:
         """Prove that no parts meet over the whole range of each joint, and of pairs of joints. What is not proven in time is not ok."""
-        words = ["--joints", ",".join(joints)] if joints else []
-        words += ["--pairs" if pairs else "--no-pairs", "--budget", repr(budget_s)]
+        words = [f"--joints={','.join(joints)}"] if joints else []
+        words += ["--pairs" if pairs else "--no-pairs", f"--budget={budget_s!r}"]
         run = str(self.bench.target(design))
-        report = await self.bench.run("certify", run, *words, seconds=budget_s + _GRACE_S, tell=_teller(context))
+        report = await self.bench.run("certify", *words, on=[run], seconds=budget_s + _GRACE_S, tell=_teller(context))
         return condensed(report if detail else report | {"proven": answers.proof(report)}, detail=detail, keep=("proven",))
 
     async def verify_certificate(self, context: Context, design: Design, detail: Detail = False) -> Json:
         """Have an independent checker read the certificate of a design, and say what it covers and what it leaves out."""
         run = self.bench.target(design)
-        report = await self.bench.run("verify-certificate", str(run), seconds=_BUILD_S, tell=_teller(context))
+        report = await self.bench.run("verify-certificate", on=[str(run)], seconds=_BUILD_S, tell=_teller(context))
         return condensed(report, detail=detail, keep=("faults", "stated"))
 
     async def adopt(
@@ -173,9 +174,8 @@ class Tools:
     ) -> Json:
         """Turn a file into a new design: a plan, part scripts and meshes, which build at once."""
         folder = self.bench.design(design, new=True)
-        report = await self.bench.run(
-            "adopt", str(self.bench.target(source)), "--out", str(folder), seconds=_BUILD_S, tell=_teller(context)
-        )
+        place = str(self.bench.target(source))
+        report = await self.bench.run("adopt", f"--out={folder}", on=[place], seconds=_BUILD_S, tell=_teller(context))
         return condensed(report, detail=detail, keep=("parts", "joints", "freedoms"))
 
     async def audit(
@@ -185,7 +185,7 @@ class Tools:
         detail: Detail = False,
     ) -> Json:
         """Say what is wrong with a file, whoever made it: structure, units, inertias, collision, overlap, motion, engines."""
-        report = await self.bench.run("audit", str(self.bench.target(design)), seconds=_BUILD_S, tell=_teller(context))
+        report = await self.bench.run("audit", on=[str(self.bench.target(design))], seconds=_BUILD_S, tell=_teller(context))
         return condensed(
             report if detail else report | {"engines": answers.engines(report)}, detail=detail, keep=("engines", "links", "joints")
         )
@@ -194,7 +194,7 @@ class Tools:
         self, context: Context, design: Annotated[str, Field(description="a design, or a file under the root")], detail: Detail = False
     ) -> Json:
         """Run it in simulators: does it load, settle, reach the ends of its joints, and keep its energy?"""
-        report = await self.bench.run("sim", str(self.bench.target(design)), seconds=_BUILD_S, tell=_teller(context))
+        report = await self.bench.run("sim", on=[str(self.bench.target(design))], seconds=_BUILD_S, tell=_teller(context))
         return condensed(report if detail else report | {"engines": answers.trials(report)}, detail=detail, keep=("engines",))
 
     async def render(
@@ -210,11 +210,14 @@ class Tools:
     ) -> list[Any]:
         """Pictures: views (iso, iso_left, iso_back, iso_below, front, back, left, right, top, bottom), or a joint's motion."""
         with scratch.folder("pictures") as folder:
-            words = ["--motion", motion] if motion else ["--views", ",".join(views[:_PICTURES]), "--explode", repr(explode)]
-            words += [*(["--parts", ",".join(parts)] if parts and not motion else []), *(["--overlaps"] if overlaps and not motion else [])]
+            words = [f"--motion={motion}"] if motion else [f"--views={','.join(views[:_PICTURES])}", f"--explode={explode!r}"]
+            words += [
+                *([f"--parts={','.join(parts)}"] if parts and not motion else []),
+                *(["--overlaps"] if overlaps and not motion else []),
+            ]
             place = self.bench.target(design)
-            words += ["--size", str(pixels), "--out", folder]
-            report = await self.bench.run("render", str(place), *words, seconds=_LOOK_S, tell=_teller(context))
+            words += [f"--size={pixels}", f"--out={folder}"]
+            report = await self.bench.run("render", *words, on=[str(place)], seconds=_LOOK_S, tell=_teller(context))
             files = [Path(file) for file in report.get("files", ()) if file.endswith(".png")][:_PICTURES]
             pictures = [Image(data=file.read_bytes(), format="png") for file in files]
         return pictures or [json.dumps(condensed(report, detail=False))]
@@ -228,8 +231,8 @@ class Tools:
         detail: Detail = False,
     ) -> Json:
         """Write a built design in other formats; says what each cannot hold."""
-        words = ["--to", ",".join(formats), *(["--strict"] if strict else [])]
-        report = await self.bench.run("export", str(self.bench.target(design)), *words, seconds=_BUILD_S, tell=_teller(context))
+        words = [f"--to={','.join(formats)}", *(["--strict"] if strict else [])]
+        report = await self.bench.run("export", *words, on=[str(self.bench.target(design))], seconds=_BUILD_S, tell=_teller(context))
         exports = {
             name: {"file": self._shown(entry.get("main", "")), "lost": answers.losses(entry.get("rows", ()))}
             for name, entry in report.get("exports", {}).items()
@@ -238,8 +241,8 @@ class Tools:
 
     async def convert(self, context: Context, source: str, target: str, strict: bool = False, detail: Detail = False) -> Json:
         """Convert a URDF, MJCF or FCStd file under the root into another format; the ending says which."""
-        words = [str(self.bench.target(source)), str(self.bench.path(target)), *(["--strict"] if strict else [])]
-        report = await self.bench.run("convert", *words, seconds=_BUILD_S, tell=_teller(context))
+        files = [str(self.bench.target(source)), str(self.bench.path(target))]
+        report = await self.bench.run("convert", *(["--strict"] if strict else []), on=files, seconds=_BUILD_S, tell=_teller(context))
         return condensed(report, detail=detail, keep=("main", "rows"))
 
     async def edit_parameters(self, context: Context, design: Design, values: dict[str, float], kernel: Dialect = "build123d") -> Json:
@@ -293,7 +296,7 @@ class Tools:
         """Check the plan of a design, and remember what was found."""
         folder = self.bench.design(design)
         content = self.bench.read(f"{design}/plan.json")
-        report = await self.bench.run("check", str(folder / "plan.json"), seconds=_PART_S)
+        report = await self.bench.run("check", on=[str(folder / "plan.json")], seconds=_PART_S)
         self._known[design], self._plans[design] = gathered(report), content
         return report
 
@@ -308,8 +311,8 @@ class Tools:
             raise ReadError.at(out, f"{out.name} of {folder.name} is a link.", "Remove the link; a build makes the folder.")
         if out.exists():
             shutil.rmtree(out)  # the run is derived from the design
-        words = ["--out", str(out), "--kernel", kernel, "--no-pictures"]
-        report = await self.bench.run("build", str(folder), *words, seconds=_BUILD_S, tell=_teller(context))
+        words = [f"--out={out}", f"--kernel={kernel}", "--no-pictures"]
+        report = await self.bench.run("build", *words, on=[str(folder)], seconds=_BUILD_S, tell=_teller(context))
         assembly, checks = report.get("assembly", {}), report.get("checks", {})
         depths = [pair.get("depth_mm") or 0.0 for pair in checks.get("pairs", ())]
         return report | {

@@ -123,13 +123,21 @@ class Workbench:
         content = script.encode()
         if len(content) > SCRIPT_BYTES:
             raise ReadError.at(part, f"The script has {len(content)} bytes; at most {SCRIPT_BYTES} are accepted.", "Write it shorter.")
-        if not _NAME.match(part):
-            raise ReadError.at(part, f"{part!r} is not a valid name of a part.", "Use the name that the plan gives it.")
-        file = self.design(design) / "parts" / f"{part}{'.freecad.py' if kernel == 'freecad' else '.py'}"
+        file = self.design(design) / "parts" / f"{self.part(part)}{'.freecad.py' if kernel == 'freecad' else '.py'}"
         if file.parent.is_symlink() or file.is_symlink():
             raise ReadError.at(part, f"{file} is a link, or lies in a linked folder.", "Remove the link.")
         write_atomically(file, content)
         return file
+
+    def part(self, name: str) -> str:
+        """Return the name of a part.
+
+        Raises:
+            ReadError: If it is not valid.
+        """
+        if not _NAME.match(name):
+            raise ReadError.at(name, f"{name!r} is not a valid name of a part.", "Use the name that the plan gives it.")
+        return name
 
     def parts(self, design: str) -> list[str]:
         """Return the names of a design's parts that need a script, as far as the plan can be read."""
@@ -150,11 +158,13 @@ class Workbench:
 
     # ------------------------------------------------------------------ work
 
-    async def run(self, *arguments: str, seconds: float, tell: Tell | None = None) -> Json:
+    async def run(self, command: str, *arguments: str, on: Sequence[str] = (), seconds: float, tell: Tell | None = None) -> Json:
         """Run a command of `articad` and return its report.
 
         Args:
-            arguments: Its arguments.
+            command: Its name.
+            arguments: Its options, each with its value in one word: `--joints=lid`.
+            on: What it works on: files, folders and names, none of which it takes for an option.
             seconds: Time after which it is killed.
             tell: Called from time to time while it runs.
 
@@ -162,23 +172,23 @@ class Workbench:
             ReadError: If it takes too long or leaves no report.
         """
         child = launcher.start(
-            [*arguments, "--json"],
+            [command, *arguments, "--json", "--", *on],
             module="articad.cli",
             limits=launcher.Limits(seconds=seconds, file_size=_FILE_BYTES),
             environment=launcher.environment(*launcher.OWN) | {ROOT_VARIABLE: str(self.root)},
         )
         try:
-            ended = await self._finished(child, arguments[0], tell)
+            ended = await self._finished(child, command, tell)
         finally:  # if cancelled, kill the command and all that it started; the thread that waits for it does the rest
             child.kill()
         if ended.late:
-            message = f"`articad {arguments[0]}` was ended after {seconds:.0f} s."
-            raise ReadError.at(arguments[0], message, "Ask for less at once, or for more seconds.")
+            message = f"`articad {command}` was ended after {seconds:.0f} s."
+            raise ReadError.at(command, message, "Ask for less at once, or for more seconds.")
         try:
             return dict(json.loads(ended.out))
         except ValueError as error:
             last = ended.err.decode(errors="replace").strip()[-400:]
-            raise ReadError.at(arguments[0], f"`articad {arguments[0]}` left no report: {last}", "Try it with fewer parts.") from error
+            raise ReadError.at(command, f"`articad {command}` left no report: {last}", "Try it with fewer parts.") from error
 
     async def _finished(self, child: launcher.Child, command: str, tell: Tell | None) -> launcher.Ended:
         """Wait in a thread for the end of a command, and report from time to time that it is running."""

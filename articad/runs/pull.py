@@ -177,7 +177,10 @@ def _limits(edit: Edit, document: EditedDocument, plan: Json) -> Iterator[tuple[
     for end, bound in zip(("Min", "Max"), bounds, strict=True):
         if not values.get(f"Enable{kind}{end}", False) or (f"{kind}{end}" in changed and f"{kind}{end}" in expressions):
             return
-        now.append(values[f"{kind}{end}"] if changed & {f"{kind}{end}", f"Enable{kind}{end}"} else bound)
+        value = values.get(f"{kind}{end}")
+        if value is None:  # the document lost the property
+            return
+        now.append(value if changed & {f"{kind}{end}", f"Enable{kind}{end}"} else bound)
     yield f"joints.{joint['name']}.{key}", now
 
 

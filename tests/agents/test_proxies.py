@@ -1,51 +1,139 @@
-"""The proxies that the environment states are used for calls of models, those and no others."""
+"""Of the environment, calls of models obey the variables of proxies and certificates that SECURITY.md names, and no others."""
 
 from __future__ import annotations
 
+import datetime as dt
+import ipaddress
+import re
+import ssl
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 
 import pytest
+from cryptography import x509
+from cryptography.hazmat.primitives import hashes, serialization
+from cryptography.hazmat.primitives.asymmetric import ec
 
-from articad.agents.calls import Calls
 from articad.agents.live import LiteLLM
 from articad.agents.llm import Request, user
+from articad.errors import TransportError
 from tests.agents.openai_stub import completion, respond
 
-VARIABLES = ("HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "NO_PROXY")
+PROXIES = ("HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "NO_PROXY")
+CERTIFICATES = ("SSL_CERT_FILE", "SSL_CERT_DIR", "SSL_VERIFY", "SSL_CERTIFICATE", "REQUESTS_CA_BUNDLE", "CURL_CA_BUNDLE")
+QUESTION = Request(step="x", role="designer", messages=(user("hi"),))
+SECURITY = Path(__file__).parents[2] / "SECURITY.md"
+
+
+class Handler(BaseHTTPRequestHandler):
+    """Answers as a model does, and lists what it is asked for."""
+
+    asked: list[str]
+
+    def do_POST(self) -> None:
+        self.asked.append(self.path)
+        self.rfile.read(int(self.headers["content-length"]))
+        respond(self, 200, completion("hello"), {})
+
+    def do_CONNECT(self) -> None:
+        self.asked.append(f"CONNECT {self.path}")
+        self.send_error(403)
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - the base class's name
+        pass
 
 
 @contextmanager
-def proxy() -> Iterator[tuple[str, list[str]]]:
-    """Serve as a proxy that answers by itself; yield its address and the addresses that it is asked for."""
+def served(certificate: Path | None = None) -> Iterator[tuple[str, list[str]]]:
+    """Serve on this machine, as a proxy too; yield the host with its port, and what is asked for."""
     asked: list[str] = []
-
-    class Handler(BaseHTTPRequestHandler):
-        def do_POST(self) -> None:
-            asked.append(self.path)
-            self.rfile.read(int(self.headers["content-length"]))
-            respond(self, 200, completion("hello"), {})
-
-        def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - the base class's name
-            pass
-
-    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+    with ThreadingHTTPServer(("127.0.0.1", 0), type("Listing", (Handler,), {"asked": asked})) as server:
+        if certificate is not None:
+            context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+            context.load_cert_chain(certificate)
+            server.socket = context.wrap_socket(server.socket, server_side=True)
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        yield f"http://127.0.0.1:{server.server_address[1]}", asked
+        yield f"127.0.0.1:{server.server_address[1]}", asked
         server.shutdown()
 
 
-@pytest.mark.parametrize("variable", ["HTTP_PROXY", "ALL_PROXY"])
-def test_a_stated_proxy_is_used(variable: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in VARIABLES:
+@pytest.fixture(autouse=True)
+def stated(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
+    """An environment in which nothing is stated but a key."""
+    for name in (*PROXIES, *CERTIFICATES):
         monkeypatch.delenv(name, raising=False)
         monkeypatch.delenv(name.lower(), raising=False)
     monkeypatch.setenv("OPENAI_API_KEY", "sk-none")
-    with proxy() as (address, asked):
-        monkeypatch.setenv(variable, address)
-        Calls.shared().close()
-        model = LiteLLM("stub", api_base="http://models.invalid/v1")
-        assert model.complete(Request(step="x", role="designer", messages=(user("hi"),))).text == "hello"
-        assert asked == ["http://models.invalid/v1/chat/completions"]
+    return monkeypatch
+
+
+@pytest.fixture(scope="module")
+def certificate(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A key and a certificate of this machine that nobody else vouches for, in one file."""
+    key = ec.generate_private_key(ec.SECP256R1())
+    name = x509.Name([x509.NameAttribute(x509.NameOID.COMMON_NAME, "127.0.0.1")])
+    today = dt.datetime.now(dt.UTC)
+    builder = x509.CertificateBuilder(name, name, key.public_key(), x509.random_serial_number(), today, today + dt.timedelta(days=2))
+    address = x509.SubjectAlternativeName([x509.IPAddress(ipaddress.ip_address("127.0.0.1"))])
+    made = builder.add_extension(address, critical=False).sign(key, hashes.SHA256())
+    form = (serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption())
+    path = tmp_path_factory.mktemp("tls") / "both.pem"
+    path.write_bytes(key.private_bytes(*form) + made.public_bytes(serialization.Encoding.PEM))
+    return path
+
+
+def answered(base: str) -> bool:
+    """Return whether a model at an address answers."""
+    try:
+        return LiteLLM("stub", api_base=base, tries=1).complete(QUESTION).text == "hello"
+    except TransportError:
+        return False
+
+
+@pytest.mark.parametrize(
+    ("variables", "base", "asked"),
+    [
+        (("HTTP_PROXY",), "http://models.invalid/v1", ["http://models.invalid/v1/chat/completions"]),
+        (("ALL_PROXY",), "http://models.invalid/v1", ["http://models.invalid/v1/chat/completions"]),
+        (("HTTPS_PROXY",), "http://models.invalid/v1", []),
+        (("HTTPS_PROXY",), "https://models.invalid/v1", ["CONNECT models.invalid:443"]),
+        (("ALL_PROXY",), "https://models.invalid/v1", ["CONNECT models.invalid:443"]),
+        (("HTTP_PROXY", "NO_PROXY"), "http://models.invalid/v1", []),
+        ((), "http://models.invalid/v1", []),
+    ],
+)
+def test_a_proxy_is_asked_only_if_it_is_stated(variables: tuple[str, ...], base: str, asked: list[str], stated: pytest.MonkeyPatch) -> None:
+    with served() as (proxy, seen):
+        for name in variables:
+            stated.setenv(name, "models.invalid" if name == "NO_PROXY" else f"http://{proxy}")
+        assert answered(base) == (asked[:1] == ["http://models.invalid/v1/chat/completions"])
+        assert seen == asked
+
+
+@pytest.mark.parametrize(
+    ("variables", "trusts"),
+    [
+        ({}, False),
+        ({"SSL_CERT_FILE": "FILE"}, True),
+        ({"SSL_VERIFY": "False"}, True),
+        ({"SSL_VERIFY": "True"}, False),
+        ({"REQUESTS_CA_BUNDLE": "FILE"}, False),
+        ({"CURL_CA_BUNDLE": "FILE"}, False),
+    ],
+)
+def test_an_unknown_certificate_is_trusted_only_if_the_environment_says_so(
+    variables: Mapping[str, str], trusts: bool, certificate: Path, stated: pytest.MonkeyPatch
+) -> None:
+    for name, value in variables.items():
+        stated.setenv(name, str(certificate) if value == "FILE" else value)
+    with served(certificate) as (host, seen):
+        assert answered(f"https://{host}/v1") is trusts
+        assert bool(seen) is trusts  # without trust not even the prompt is sent
+
+
+def test_the_page_names_the_variables() -> None:
+    told = set(re.findall(r"`([A-Z_]+)`", SECURITY.read_text()))
+    assert {*PROXIES, *CERTIFICATES} <= told

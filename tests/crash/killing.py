@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -123,6 +123,35 @@ def resumed(work: Work, point: Point, root: Path, check: Callable[[Path], None])
     assert child(work, folder) == 0, f"killed at {point}, it does not resume"
     check(folder)
     return killed
+
+
+def harried(work: Work, points: Sequence[Point], root: Path, check: Callable[[Path], None]) -> tuple[int, int]:
+    """Kill a work at each point in turn, each time after it was taken up; begin again whenever it ends, and hold its result.
+
+    Returns:
+        How often it was killed, and how many results were wrong or did not come.
+    """
+    folder = root / "work"
+    killed = failed = since = 0
+    for number, point in enumerate([*points, None], start=1):
+        if not since:
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
+        since += 1
+        code = child(work, folder, point)
+        if code == -signal.SIGKILL and point is not None:
+            killed += 1
+        else:
+            try:
+                assert code == 0, "it does not resume"
+                check(folder)
+            except AssertionError as error:
+                failed += 1
+                sys.stderr.write(f"after {since} starts, up to point {number}, {point}: {error}\n")
+            since = 0
+        if number % 50 == 0:
+            sys.stderr.write(f"{number} points, {killed} kills, {failed} failed\n")
+    return killed, failed
 
 
 def killed_writers(store: Any, folder: Path, *, writers: int, seconds: float, seed: int) -> set[tuple[int, int]]:
