@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -170,15 +170,25 @@ def write(assembly: Assembly, path: str | Path, *, strict: bool = False, **optio
             to something else would be replaced (E_REPLACES).
     """
     path, found = Path(path), _written_as(path)
-    if unknown := set(options) - set(_known(found.writer, options)):
-        raise ExportError(
-            f"{found.name} has no option {', '.join(sorted(unknown))}; it has {', '.join(options_of(found.writer)) or 'none'}."
-        )
+    require_options([found], options)
     bundle = found.write(assembly, strict=strict, **options)
     bundle = replace(bundle, files={path.name if name == bundle.main else name: content for name, content in bundle.files.items()})
     _require_free(bundle, path)
     bundle.write(path.parent)
     return bundle
+
+
+def require_options(written: Sequence[Format], options: Iterable[str]) -> None:
+    """Refuse options that none of the formats to be written has.
+
+    Raises:
+        ExportError: An option is unknown; the message lists those of the formats.
+    """
+    known = {name for found in written for name in options_of(found.writer)}
+    if unknown := sorted(set(options) - known):
+        names = ", ".join(found.name for found in written)
+        has, it_has = ("has", "it has") if len(written) == 1 else ("have", "they have")
+        raise ExportError(f"{names} {has} no option {', '.join(unknown)}; {it_has} {', '.join(sorted(known)) or 'none'}.")
 
 
 _NAMING: Final = frozenset({".urdf", ".xacro", ".xml", ".mjcf", ".sdf", ".world"})

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     argument("--to", metavar="FORMATS", dest="formats", type=formats, required=True, help=f"formats to write, of {', '.join(FORMATS)}"),
     argument("--out", metavar="DIR", help="where to write, a folder for each format; by default RUN/export"),
     argument("--strict", action="store_true", help="fail on what a format cannot represent, instead of reporting it as lost"),
-    argument("--loops", choices=["none", "isaac", "drake", "mimic"], default="none", help="how URDF closes loops (none)"),
+    argument("--loops", choices=["none", "isaac", "drake", "mimic"], default=None, help="how URDF closes loops (none)"),
     argument(
         "--collision",
         choices=["pieces", "solid", "hull"],
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     ),
     argument("--ros", metavar="PACKAGE", default=None, help="write URDF as a ROS 2 package, with SRDF and ros2_control"),
     argument(
-        "--process", choices=["fdm", "sla", "sls"], default="fdm", help="the printing process for 3MF: gaps are checked against it (fdm)"
+        "--process", choices=["fdm", "sla", "sls"], default=None, help="the printing process for 3MF: gaps are checked against it (fdm)"
     ),
     SPLIT,
     TREES,
@@ -49,12 +49,10 @@ if TYPE_CHECKING:
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
     from articad.commands.steps import stage
-    from articad.formats import NAMED
+    from articad.formats import NAMED, require_options
     from articad.runs.record import assembly_of, record_export
     from articad.runs.run import Run
 
-    with Run.view(options.run) as run, terminal.progress("Reading") as tell:
-        assembly = assembly_of(run, progress=tell)
     ros = options.ros is not None
     choices = {
         "loops": options.loops,
@@ -69,6 +67,10 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         "trees": options.trees,
         "drawings": options.drawings,
     }
+    choices = {name: value for name, value in choices.items() if value}  # each writer has its own defaults
+    require_options([NAMED[name] for name in options.formats], set(choices) - {"srdf", "ros2_control"})  # those follow from --ros
+    with Run.view(options.run) as run, terminal.progress("Reading") as tell:
+        assembly = assembly_of(run, progress=tell)
     exports: dict[str, Report] = {}
     with terminal.progress("Exporting", total=len(options.formats)) as tell:
         if options.out is None:

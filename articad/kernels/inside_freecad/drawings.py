@@ -186,7 +186,7 @@ class _Drawing:
         (shape,) = [item for item in container.Group if item.TypeId in ("PartDesign::Body", "Part::Feature", "Part::Mirroring")]
         link = self.document.addObject("App::Link", f"Drawn_{part}")
         link.LinkedObject = shape
-        link.LinkTransform = True
+        link.setExpression("Placement", f"{shape.Name}.Placement")  # with LinkTransform, FreeCAD 1.1 measures in the frame turned twice
         link.Label = f"{part} drawn"
         self.group.addObject(link)
         self.hidden.append(link.Name)
