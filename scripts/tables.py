@@ -6,6 +6,7 @@ import argparse
 import ast
 import re
 import sys
+import textwrap
 from itertools import groupby
 from pathlib import Path
 from typing import get_args
@@ -144,6 +145,8 @@ A script of the FreeCAD kernel, `parts/<part>.freecad.py`, defines `build(part)`
 `part.name`, `part.description`, `part.material`, `part.dimensions` (name -> number) and `part.connectors` (name -> object with `o`, `z`, `x`, `label`, `joints`) are
 those of the plan; `part.document` and `part.body` are FreeCAD's own, with everything that FreeCAD offers.
 
+The examples are bodies of `build(part)` for the dimensions width 60, depth 40, height 20, radius 5 and turn_deg 90. Each is a whole part.
+
 ```text
 def build(part):
     part.box(("-width / 2", 0, 0), ("width", "depth", "height"), name="Outside")
@@ -164,7 +167,9 @@ def freecad_kernel() -> str:
         given = re.sub(r"\bself(, )?", "", ast.unparse(node.args), count=1)
         returned = "" if node.returns is None or ast.unparse(node.returns) == "None" else f" -> {ast.unparse(node.returns)}"
         lines += ["", f"## part.{node.name}", "", "```text", f"part.{node.name}({given}){returned}", "```", ""]
-        lines += [re.sub(r"^    (\w+): ", r"- `\1`: ", line) for line in (ast.get_docstring(node) or "").splitlines() if line != "Args:"]
+        told, _, example = (ast.get_docstring(node) or "").partition("\n\nExample:\n")
+        lines += [re.sub(r"^    (\w+): ", r"- `\1`: ", line) for line in told.splitlines() if line != "Args:"]
+        lines += ["", "```text", textwrap.dedent(example), "```"]
     return "\n".join(lines) + "\n"
 
 

@@ -290,6 +290,11 @@ def test_export_writes_beside_or_elsewhere_the_same_bytes(chest: Path, tmp_path:
     assert code == 0
     assert (out / "export" / "mjcf" / "chest.xml").read_bytes() == (tmp_path / "elsewhere" / "mjcf" / "chest.xml").read_bytes()
     assert Path(exported["exports"]["urdf"]["main"]).is_file()
+    for option in ("--split", "--trees", "--drawings", "--process=sla"):  # none of the formats has them
+        code, refused = report("export", out, "--to", "mjcf,urdf", option, "--out", tmp_path / "refused")
+        assert code == 3
+        assert f"mjcf, urdf have no option {option.strip('-').partition('=')[0]}" in refused["error"]["message"]
+    assert not (tmp_path / "refused").exists()
 
 
 def test_convert_writes_the_file_that_was_named(chest: Path, tmp_path: Path, report: Any) -> None:

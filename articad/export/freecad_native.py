@@ -106,6 +106,7 @@ class _Writer:
         self.shapes: dict[str, str] = {}
         self.systems: dict[tuple[str, str], str] = {}
         self.labels: set[str] = {job["name"]}
+        self.numbers: dict[str, int] = {}  # label -> the number that it gets next
 
     def write(self) -> None:
         if self.job["parameters"]:
@@ -176,9 +177,10 @@ class _Writer:
 
     def _label(self, wanted: str) -> str:
         """Return a label that no other object has, formed like FreeCAD's."""
-        free, number = wanted, 1
+        free, number = wanted, self.numbers.get(wanted, 1)
         while free in self.labels:
             free, number = f"{wanted}{number:03d}", number + 1
+        self.numbers[wanted] = number
         self.labels.add(free)
         return free
 

@@ -24,16 +24,18 @@ class Names:
 
     def __init__(self, reserved: Iterable[str] = (), *, any_text: bool = False) -> None:
         self._taken: set[str] = set(reserved)
+        self._next: dict[str, int] = {}  # name -> the number that it gets next: counting from 2 each time would be quadratic
         self._valid = str if any_text else valid_name
         self.changed: dict[str, str] = {}
 
     def claim(self, wanted: str) -> str:
         """Return `wanted` if it is valid and unused, else a similar valid name; `changed` records which."""
         name = free = self._valid(wanted)
-        number = 2
+        number = self._next.get(name, 2)
         while free in self._taken:
             free = f"{name}_{number}"
             number += 1
+        self._next[name] = number
         self._taken.add(free)
         if free != wanted:
             self.changed[wanted] = free

@@ -266,8 +266,9 @@ class _Writer:
         item.detailParts = False
         self.document.recompute()
         labelled = {self.parts[part["name"]].Label: self.parts[part["name"]] for part in self.job["parts"]}
+        used = set(item.getUsedCells())
         for row in range(2, 2 + len(labelled)):
-            part = labelled.get(str(item.get(f"B{row}"))) if f"B{row}" in item.getUsedCells() else None
+            part = labelled.get(str(item.get(f"B{row}"))) if f"B{row}" in used else None
             for place, key in enumerate(bill["columns"].values()):
                 if part is not None and key in part.PropertiesList:
                     item.set(f"{chr(ord('A') + len(_OWN_COLUMNS) + place)}{row}", f"={part.Name}.{key}")

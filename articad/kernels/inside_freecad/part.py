@@ -66,22 +66,43 @@ class Authoring:
     # ------------------------------------------------------------------ numbers
 
     def expression(self, name: str) -> str:
-        """Return the expression that binds a length, an angle or a count to one dimension."""
+        """Return the expression that binds a length, an angle or a count to one dimension.
+
+        Example:
+            plate = part.box((0, 0, 0), ("width", "depth", 1))
+            plate.setExpression("Length", part.expression("height"))
+        """
         if name not in self.dimensions:
             raise ValueError(f"There is no dimension {name!r}; there are {', '.join(self.dimensions) or 'none'}")
         unit = "" if name.endswith("_count") else " * 1 deg" if name.endswith("_deg") else " * 1 mm"
         return f"Dimensions.d_{name}{unit}"
 
     def length(self, value: Value) -> str:
-        """Return FreeCAD's expression of a length."""
+        """Return FreeCAD's expression of a length.
+
+        Example:
+            plate = part.box((0, 0, 0), ("width", "depth", 1))
+            plate.setExpression("Length", part.length("height / 2"))
+        """
         return f"({self._arithmetic(value)}) * 1 mm"
 
     def angle(self, value: Value) -> str:
-        """Return FreeCAD's expression of an angle in degrees."""
+        """Return FreeCAD's expression of an angle in degrees.
+
+        Example:
+            outline = part.sketch("XZ")
+            part.rectangle(outline, "radius", 0, 4, "height")
+            ring = part.revolution(outline)
+            ring.setExpression("Angle", part.angle("turn_deg"))
+        """
         return f"({self._arithmetic(value)}) * 1 deg"
 
     def number(self, value: Value) -> float:
-        """Return the present value of a number, or of a text over dimensions."""
+        """Return the present value of a number, or of a text over dimensions.
+
+        Example:
+            part.box((0, 0, 0), ("width", "depth", max(part.number("height / 5"), 3)))
+        """
         if not isinstance(value, str):
             return float(value)
         degrees = {
@@ -112,7 +133,12 @@ class Authoring:
         return _NAME.sub(tied, value).replace(",", ";")
 
     def tie(self, item: Any, name: str, value: Value) -> None:
-        """Bind a property of a feature to a number, or to arithmetic over dimensions."""
+        """Bind a property of a feature to a number, or to arithmetic over dimensions.
+
+        Example:
+            plate = part.box((0, 0, 0), ("width", "depth", 1))
+            part.tie(plate, "Length", "height - radius")
+        """
         text = self.angle(value) if name.endswith(("Angle", "Angle2")) else self.length(value)
         item.setExpression(name, text)
 
@@ -132,6 +158,11 @@ class Authoring:
             plane: XY: x right, y up, normal +Z. XZ: x = X, y = Z, normal -Y. YZ: x = Y, y = Z, normal +X.
             at: Where its origin is, in the part's frame.
             name: In the tree.
+
+        Example:
+            outline = part.sketch("XZ", at=(0, "depth", 0))
+            part.circle(outline, 0, 0, "radius")
+            part.pad(outline, "depth")
         """
         sketch = self.body.newObject("Sketcher::SketchObject", name)
         (origin,) = [item for item in self.body.Origin.OriginFeatures if item.Role == _PLANES[plane]]
@@ -145,7 +176,13 @@ class Authoring:
         return sketch
 
     def polygon(self, sketch: Any, points: Sequence[tuple[Value, Value]]) -> None:
-        """Draw a closed outline through points."""
+        """Draw a closed outline through points.
+
+        Example:
+            outline = part.sketch()
+            part.polygon(outline, [(0, 0), ("width", 0), (0, "depth")])
+            part.pad(outline, "height")
+        """
         here = [App.Vector(self.number(x), self.number(y), 0) for x, y in points]
         first = sketch.GeometryCount
         count = len(points)
@@ -157,7 +194,14 @@ class Authoring:
             self._fix(sketch, first + number, 1, x, y, f"corner{number + 1}")
 
     def path(self, sketch: Any, points: Sequence[tuple[Value, Value]]) -> None:
-        """Draw straight lines from point to point, for a sweep; at least two points, and no outline."""
+        """Draw straight lines from point to point, for a sweep; at least two points, and no outline.
+
+        Example:
+            outline, line = part.sketch("XY"), part.sketch("XZ")
+            part.circle(outline, 0, 0, "radius")
+            part.path(line, [(0, 0), (0, "height"), ("width", "height")])
+            part.sweep(outline, line)
+        """
         here = [App.Vector(self.number(x), self.number(y), 0) for x, y in points]
         first = sketch.GeometryCount
         for number in range(len(points) - 1):
@@ -169,19 +213,37 @@ class Authoring:
             self._fix(sketch, first + number - last, 2 if last else 1, x, y, f"point{number + 1}")
 
     def rectangle(self, sketch: Any, x: Value, y: Value, width: Value, height: Value) -> None:
-        """Draw a rectangle from its lower left corner."""
+        """Draw a rectangle from its lower left corner.
+
+        Example:
+            outline = part.sketch()
+            part.rectangle(outline, "-width / 2", 0, "width", "depth")
+            part.pad(outline, "height")
+        """
         right, top = _sum(x, width), _sum(y, height)
         self.polygon(sketch, [(x, y), (right, y), (right, top), (x, top)])
 
     def circle(self, sketch: Any, x: Value, y: Value, radius: Value) -> None:
-        """Draw a circle."""
+        """Draw a circle.
+
+        Example:
+            outline = part.sketch()
+            part.circle(outline, "width / 2", 0, "radius")
+            part.pad(outline, "height")
+        """
         center = App.Vector(self.number(x), self.number(y), 0)
         index = sketch.addGeometry(Part.Circle(center, App.Vector(0, 0, 1), self.number(radius)))
         self._fix(sketch, index, 3, x, y, "center")
         self._dimension(sketch, Sketcher.Constraint("Radius", index, self.number(radius)), radius, "radius")
 
     def slot(self, sketch: Any, start: tuple[Value, Value], end: tuple[Value, Value], radius: Value) -> None:
-        """Draw a slot along x or y from the centre of one round end to that of the other."""
+        """Draw a slot along x or y from the centre of one round end to that of the other.
+
+        Example:
+            outline = part.sketch()
+            part.slot(outline, (0, 0), ("width", 0), "radius")
+            part.pad(outline, "height")
+        """
         a, b = (App.Vector(self.number(x), self.number(y), 0) for x, y in (start, end))
         r = self.number(radius)
         angle = math.atan2(b.y - a.y, b.x - a.x)
@@ -199,7 +261,14 @@ class Authoring:
         self._dimension(sketch, Sketcher.Constraint("Radius", one, r), radius, "radius")
 
     def axis(self, sketch: Any, start: tuple[Value, Value], end: tuple[Value, Value]) -> str:
-        """Draw a line that is no outline; return the name by which a revolution turns about it."""
+        """Draw a line that is no outline; return the name by which a revolution turns about it.
+
+        Example:
+            outline = part.sketch("XZ")
+            part.rectangle(outline, "radius", 0, 4, "height")
+            turned_about = part.axis(outline, (0, 0), (0, "height"))
+            part.revolution(outline, turned_about)
+        """
         a, b = (App.Vector(self.number(x), self.number(y), 0) for x, y in (start, end))
         count = sum(sketch.getConstruction(number) for number in range(sketch.GeometryCount))
         line = sketch.addGeometry(Part.LineSegment(a, b), True)
@@ -226,14 +295,27 @@ class Authoring:
     # ------------------------------------------------------------------ features; each becomes the tip
 
     def pad(self, sketch: Any, length: Value, *, both: bool = False, back: bool = False, name: str = "Pad") -> Any:
-        """Add material along the sketch's normal: `both` half to each side, `back` against it."""
+        """Add material along the sketch's normal: `both` half to each side, `back` against it.
+
+        Example:
+            outline = part.sketch()
+            part.rectangle(outline, 0, 0, "width", "depth")
+            part.pad(outline, "height", both=True)
+        """
         pad = self.body.newObject("PartDesign::Pad", name)
         pad.Profile, pad.Midplane, pad.Reversed = sketch, both, back
         self.tie(pad, "Length", length)
         return self._done(pad)
 
     def pocket(self, sketch: Any, length: Value | None = None, *, both: bool = False, back: bool = False, name: str = "Pocket") -> Any:
-        """Cut against the sketch's normal, `back` along it; through everything, to both sides, if no length is given."""
+        """Cut against the sketch's normal, `back` along it; through everything, to both sides, if no length is given.
+
+        Example:
+            part.box((0, 0, 0), ("width", "depth", "height"))
+            hole = part.sketch(at=(0, 0, "height"))
+            part.circle(hole, "width / 2", "depth / 2", "radius")
+            part.pocket(hole)
+        """
         pocket = self.body.newObject("PartDesign::Pocket", name)
         pocket.Profile, pocket.Midplane, pocket.Reversed = sketch, both or length is None, back
         if length is None:
@@ -243,7 +325,13 @@ class Authoring:
         return self._done(pocket)
 
     def revolution(self, sketch: Any, axis: str = "V", *, cut: bool = False, name: str = "Revolution") -> Any:
-        """Turn a sketch fully about its vertical ("V") or horizontal ("H") axis, or one that `axis` drew; `cut` takes away."""
+        """Turn a sketch fully about its vertical ("V") or horizontal ("H") axis, or one that `axis` drew; `cut` takes away.
+
+        Example:
+            outline = part.sketch("XZ")
+            part.rectangle(outline, 0, 0, "radius", "height")
+            part.revolution(outline)
+        """
         feature = self.body.newObject("PartDesign::Groove" if cut else "PartDesign::Revolution", name)
         feature.Profile = sketch
         feature.ReferenceAxis = (sketch, [axis if axis.startswith("Axis") else f"{axis}_Axis"])
@@ -251,7 +339,14 @@ class Authoring:
         return self._done(feature)
 
     def loft(self, sketch: Any, *others: Any, cut: bool = False, name: str = "Loft") -> Any:
-        """Span straight faces from one sketch to the next, each of one outline with as many corners; `cut` takes away."""
+        """Span straight faces from one sketch to the next, each of one outline with as many corners; `cut` takes away.
+
+        Example:
+            low, high = part.sketch(), part.sketch(at=(0, 0, "height"))
+            part.rectangle(low, 0, 0, "width", "depth")
+            part.rectangle(high, 0, 0, "width / 2", "depth / 2")
+            part.loft(low, high)
+        """
         loft = self.body.newObject("PartDesign::SubtractiveLoft" if cut else "PartDesign::AdditiveLoft", name)
         loft.Profile, loft.Sections, loft.Ruled = sketch, list(others), True
         for other in others:
@@ -259,7 +354,14 @@ class Authoring:
         return self._done(loft)
 
     def sweep(self, sketch: Any, path: Any, *, cut: bool = False, name: str = "Sweep") -> Any:
-        """Move an outline along a path, with mitred corners; the path starts in the outline's plane. `cut` takes away."""
+        """Move an outline along a path, with mitred corners; the path starts in the outline's plane. `cut` takes away.
+
+        Example:
+            outline, line = part.sketch("XY"), part.sketch("XZ")
+            part.rectangle(outline, "-radius", "-radius", "2 * radius", "2 * radius")
+            part.path(line, [(0, 0), (0, "height"), ("width", "height")])
+            part.sweep(outline, line)
+        """
         sweep = self.body.newObject("PartDesign::SubtractivePipe" if cut else "PartDesign::AdditivePipe", name)
         sweep.Profile, sweep.Spine = sketch, (path, [f"Edge{number + 1}" for number in range(path.GeometryCount)])
         sweep.Transition = "Right corner"
@@ -267,7 +369,11 @@ class Authoring:
         return self._done(sweep)
 
     def sphere(self, center: Sequence[Value], radius: Value, *, cut: bool = False, name: str = "Sphere") -> Any:
-        """Add or cut a sphere."""
+        """Add or cut a sphere.
+
+        Example:
+            part.sphere((0, 0, "height"), "radius")
+        """
         sphere = self.body.newObject("PartDesign::SubtractiveSphere" if cut else "PartDesign::AdditiveSphere", name)
         self.tie(sphere, "Radius", radius)
         for axis, value in zip("xyz", center, strict=True):
@@ -275,42 +381,78 @@ class Authoring:
         return self._done(sphere)
 
     def fillet(self, side: str, radius: Value, *, name: str = "Fillet") -> Any:
-        """Round all edges of the outermost flat face that looks along +X, -X, +Y, -Y, +Z or -Z."""
+        """Round all edges of the outermost flat face that looks along +X, -X, +Y, -Y, +Z or -Z.
+
+        Example:
+            part.box((0, 0, 0), ("width", "depth", "height"))
+            part.fillet("+Z", "radius / 2")
+        """
         return self._dressed("PartDesign::Fillet", side, "Radius", radius, name)
 
     def chamfer(self, side: str, size: Value, *, name: str = "Chamfer") -> Any:
-        """Bevel all edges of the outermost flat face that looks along +X, -X, +Y, -Y, +Z or -Z."""
+        """Bevel all edges of the outermost flat face that looks along +X, -X, +Y, -Y, +Z or -Z.
+
+        Example:
+            part.box((0, 0, 0), ("width", "depth", "height"))
+            part.chamfer("+Z", "radius / 2")
+        """
         return self._dressed("PartDesign::Chamfer", side, "Size", size, name)
 
     def cylinder(self, at: Sequence[Value], axis: str, radius: Value, length: Value, *, cut: bool = False, name: str = "Cylinder") -> Any:
-        """Add or cut a cylinder that starts at a point and runs along +X, +Y, +Z, -X, -Y or -Z."""
+        """Add or cut a cylinder that starts at a point and runs along +X, +Y, +Z, -X, -Y or -Z.
+
+        Example:
+            part.box((0, 0, 0), ("width", "depth", "height"))
+            part.cylinder(("width / 2", "depth / 2", 0), "+Z", "radius", "height", cut=True)
+        """
         plane, forward = {"Z": ("XY", True), "Y": ("XZ", False), "X": ("YZ", True)}[axis[-1]]
         sketch = self.sketch(plane, at, name=f"{name}Sketch")
         self.circle(sketch, 0, 0, radius)
         return self._extruded(sketch, length, along=forward != axis.startswith("-"), cut=cut, name=name)
 
     def box(self, corner: Sequence[Value], size: Sequence[Value], *, cut: bool = False, name: str = "Box") -> Any:
-        """Add or cut a box from its corner of smallest coordinates."""
+        """Add or cut a box from its corner of smallest coordinates.
+
+        Example:
+            part.box(("-width / 2", 0, 0), ("width", "depth", "height"))
+        """
         sketch = self.sketch("XY", (0, 0, corner[2]), name=f"{name}Sketch")
         self.rectangle(sketch, corner[0], corner[1], size[0], size[1])
         return self._extruded(sketch, size[2], along=True, cut=cut, name=name)
 
     def linear_pattern(self, features: Sequence[Any], axis: str, length: Value, count: Value) -> Any:
-        """Repeat features along X, Y or Z of the body over a length, the first included."""
+        """Repeat features along X, Y or Z of the body over a length, the first included.
+
+        Example:
+            part.box((0, 0, 0), ("width", "depth", "height"))
+            hole = part.cylinder(("radius + 1", "depth / 2", 0), "+Z", "radius", "height", cut=True)
+            part.linear_pattern([hole], "X", "width - 2 * radius - 2", 3)
+        """
         pattern = self.body.newObject("PartDesign::LinearPattern", "LinearPattern")
         pattern.Originals, pattern.Direction = list(features), (self._axis(axis), [""])
         self.tie(pattern, "Length", length)
         return self._counted(pattern, count)
 
     def polar_pattern(self, features: Sequence[Any], axis: str, count: Value) -> Any:
-        """Repeat features evenly round X, Y or Z of the body, the first included."""
+        """Repeat features evenly round X, Y or Z of the body, the first included.
+
+        Example:
+            part.cylinder((0, 0, 0), "+Z", "depth", "height")
+            hole = part.cylinder(("depth / 2", 0, 0), "+Z", "radius", "height", cut=True)
+            part.polar_pattern([hole], "Z", 4)
+        """
         pattern = self.body.newObject("PartDesign::PolarPattern", "PolarPattern")
         pattern.Originals, pattern.Axis = list(features), (self._axis(axis), [""])
         pattern.Angle = 360.0
         return self._counted(pattern, count)
 
     def connector(self, name: str, o: Sequence[Value], z: Sequence[Value], x: Sequence[Value] | None = None) -> Any:
-        """Put a coordinate system into the body, tied to the dimensions; return it for the dict of connectors."""
+        """Put a coordinate system into the body, tied to the dimensions; return it for the dict of connectors.
+
+        Example:
+            part.box((0, 0, 0), ("width", "depth", "height"))
+            connectors = {"hinge": part.connector("hinge", (0, "depth", "height"), (-1, 0, 0), (0, -1, 0))}
+        """
         system = self.body.newObject("PartDesign::CoordinateSystem", f"connector_{name}")
         right = x if x is not None else self.connectors[name].x
         if not any(isinstance(value, str) for value in (*z, *right)):
@@ -326,7 +468,16 @@ class Authoring:
         return system
 
     def settle(self) -> None:
-        """Recompute until the names of edges stay: call it before a fillet or chamfer names any."""
+        """Recompute until the names of edges stay: call it before a fillet or chamfer names any.
+
+        Example:
+            block = part.box((0, 0, 0), ("width", "depth", "height"))
+            part.settle()
+            edge = part.body.newObject("PartDesign::Chamfer", "Edge")
+            edge.Base = (block, ["Edge1"])
+            part.tie(edge, "Size", 2)
+            part.body.Tip = edge
+        """
         for _ in range(2):
             for item in self.document.Objects:
                 item.touch()
