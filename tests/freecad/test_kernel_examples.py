@@ -56,9 +56,7 @@ def examples() -> dict[str, str]:
     return {name: textwrap.dedent(text.partition("\n\nExample:\n")[2]) for name, text in told.items()}
 
 
-@pytest.mark.parametrize(
-    "freecad", [freecad_install.find, pytest.param(opened.newer, marks=pytest.mark.freecad_next)], ids=["1.0", "next"]
-)
+@pytest.mark.parametrize("freecad", [freecad_install.find, pytest.param(opened.newer, marks=pytest.mark.freecad_next)], ids=["1.0", "next"])
 def test_every_example_calls_its_function_and_builds_its_solid(freecad: Callable[[], FreeCAD], tmp_path: Path) -> None:
     assert set(examples()) == set(VOLUMES)
     assert all(f"part.{name}(" in text for name, text in examples().items())
