@@ -9,7 +9,9 @@ import signal
 import subprocess
 import sys
 import time
+import traceback
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -19,16 +21,17 @@ from articad.commands.command import COMMANDS
 from tests.agents import hostile_endpoint as ways
 from tests.agents.hostile_endpoint import hostile
 from tests.leftovers import descendants, gone, started_with
-from tests.test_processes import _heeds_interrupts
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in Linux's /proc")]
 
-ARTICAD = [sys.executable, "-P", "-c", "import sys; from articad.cli import main; sys.exit(main())"]
+HEEDED = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"  # a shell's background jobs ignore it
+ARTICAD = [sys.executable, "-P", "-c", f"{HEEDED}; import sys; from articad.cli import main; sys.exit(main())"]
 RECORDED = Path(__file__).parent / "recordings" / "toy"
 ENDLESS = "def build(part):\n    while True:\n        pass\n"
 HANGS = "#!/bin/sh\nsleep 600 &\nsleep 600\n"
 START_S = 200.0  # for a command to be in the middle of its work, on a busy machine
 ALONE_S = 1.5  # of a command that starts no process, to be in the middle of its work on an idle machine
+AT_ONCE = 4  # commands: most of the time each of them waits for something
 SIGNALS: Final = (signal.SIGTERM, signal.SIGKILL, signal.SIGINT)
 
 
@@ -43,6 +46,7 @@ class Line(NamedTuple):
 LINES: Final = (
     Line("part endless tray", endless=True),
     Line("build endless --out made --no-pictures", endless=True),
+    Line("bom endless --out made", endless=True),
     Line("batch batch.json --out made --jobs 1", endless=True),
     Line("watch endless --no-browser", endless=True),
     Line("mcp --root .", endless=True),
@@ -107,7 +111,6 @@ def ended_by(number: signal.Signals, words: list[str], folder: Path, is_busy: Ca
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-        preexec_fn=_heeds_interrupts,  # noqa: PLW1509 - this process starts no thread before
     ) as process:
         try:
             assert process.stdin is not None
@@ -161,10 +164,22 @@ def end(line: Line, number: signal.Signals, made: Path, folder: Path) -> None:
         ended_by(number, words, place, is_busy, said_to(words))
 
 
-@pytest.mark.parametrize(("turn", "line"), list(enumerate(LINES)), ids=[line.words.split()[0] for line in LINES])
-def test_a_command_that_is_ended_leaves_nothing(turn: int, line: Line, made: Path, tmp_path: Path) -> None:
-    """Each command by one signal, in turn."""
-    end(line, SIGNALS[turn % len(SIGNALS)], made, tmp_path)
+def test_a_command_that_is_ended_leaves_nothing(made: Path, tmp_path: Path) -> None:
+    """Each command by one signal, in turn; several at once."""
+
+    def problem(turn: int) -> str:
+        folder = tmp_path / str(turn)
+        folder.mkdir()
+        line, number = LINES[turn], SIGNALS[turn % len(SIGNALS)]
+        try:
+            end(line, number, made, folder)
+        except Exception:  # noqa: BLE001 - all are told at the end
+            return f"{line.words}, {number.name}:\n{traceback.format_exc()}"
+        return ""
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        problems = [problem for problem in pool.map(problem, range(len(LINES))) if problem]
+    assert not problems, "\n".join(problems)
 
 
 @pytest.mark.crash

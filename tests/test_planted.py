@@ -31,6 +31,7 @@ check run
 certify run --budget 1
 verify-certificate run/certificate.json
 export run --to urdf,mjcf,step
+bom run --cuts
 audit run/export/urdf/product.urdf
 audit run/export/mjcf/product.xml
 sim run/export/urdf/product.urdf

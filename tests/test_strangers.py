@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,9 +14,14 @@ import articad
 from articad.agents import drift
 from articad.batches.batch import read_batch
 from articad.batches.items import BatchItem
+from articad.cli import main
 from articad.errors import ReadError, WriteError
+from articad.export.names import file_name
+from articad.kinematics.mechanism import Mechanism
+from articad.render.files import write_motion
 from articad.runs.run import Run, RunRequest
 from articad.simulation import examine
+from tests.chains import chain
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no pipes in folders")
 SECRET = "the first words of a secret"
@@ -58,6 +64,32 @@ def test_an_item_whose_plan_or_script_is_no_file_of_its_folder_is_refused(kind: 
     with pytest.raises(ReadError, match="cannot be read") as error:
         _ = BatchItem(str(folder)).digest
     assert SECRET not in error.value.message
+
+
+@pytest.mark.parametrize("name", ["../../evil", "OUT/evil", "a/b", "\x1b[2J"])
+def test_a_parts_list_stays_in_its_folder_whatever_the_product_is_called(name: str, tmp_path: Path) -> None:
+    folder = tmp_path / "a" / "b"
+    folder.mkdir(parents=True)
+    name = name.replace("OUT", str(tmp_path)).replace("\x1b", "&#x9;")
+    (folder / "it.urdf").write_text(
+        f'<robot name="{name}"><link name="a"><visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>'
+    )
+    assert main(["bom", str(folder / "it.urdf"), "--out", str(folder / "papers"), "--json"]) == 0
+    written = [path for path in tmp_path.rglob("*") if path.is_file() and path.name != "it.urdf"]
+    assert {path.parent for path in written} == {folder / "papers"}
+    assert all(path.name.isprintable() for path in written)
+
+
+@pytest.mark.parametrize("name", ["../../evil", "OUT/evil", ".hidden"])
+def test_a_film_stays_in_its_folder_whatever_the_joint_is_called(name: str, tmp_path: Path) -> None:
+    folder = tmp_path / "a" / "b"
+    name = name.replace("OUT", str(tmp_path))
+    assembly = chain(2)
+    (joint,) = assembly.mechanism.joints
+    joints = [replace(joint, name=name)]
+    renamed = replace(assembly, mechanism=Mechanism(assembly.mechanism.parts, assembly.ground, joints, []))
+    files = write_motion(renamed, name, folder, size=64)
+    assert [(file.parent, file.stem, file.is_file()) for file in files] == [(folder, file_name(name), True)] * 2
 
 
 def test_a_model_to_simulate_is_counted_before_it_is_parsed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

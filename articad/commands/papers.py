@@ -59,27 +59,28 @@ def _kerf(text: str) -> float:
     SANDBOX,
 )
 def _bom(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.export.bundle import Bundle
+    from articad.export.names import file_name
     from articad.papers.bill import COLUMNS, bill_json, bill_xlsx, rows_of, written_csv
     from articad.papers.items import items_of
-    from articad.runs.run import write_atomically
 
     assembly = loaded(options.target, options, terminal)
     items = items_of(assembly, options.purchased)
     report = bill_json(assembly, items)
     files: dict[str, bytes] = {}
+    stem = file_name(assembly.name)  # a file of somebody else may give any name
     if options.cuts:
         report["cuts"], text, table = _cut_list(assembly, items, options)
-        files |= {f"{assembly.name}_cuts.txt": text.encode(), f"{assembly.name}_cuts.csv": table}
+        files |= {f"{stem}_cuts.txt": text.encode(), f"{stem}_cuts.csv": table}
     for name in options.bills:
-        files[f"{assembly.name}_bom.{name}"] = (
+        files[f"{stem}_bom.{name}"] = (
             bill_xlsx(assembly, items)
             if name == "xlsx"
             else written_csv(COLUMNS, rows_of(items))
             if name == "csv"
             else (json.dumps(report, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
         )
-    for name, content in files.items():
-        write_atomically(Path(options.out) / name, content)
+    Bundle(files).write(options.out)
     terminal.table(
         ("item", "name", "quantity", "material", "kg", "kg in all", "x × y × z, mm"),
         [

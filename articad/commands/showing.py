@@ -34,6 +34,7 @@ _BROWSER = argument("--no-browser", dest="browser", action="store_false", help="
 def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
     import webbrowser
 
+    from articad.export.names import file_name
     from articad.report import Documents, report_page
     from articad.runs.record import assembly_of, documents_of, record_page
     from articad.runs.run import Run
@@ -51,7 +52,7 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
         assembly = loaded(options.target, options, terminal)
         with terminal.progress("Checking"):
             text = report_page(assembly, Documents(checks=assembly.check().to_json()))
-        page = _written(Path(options.out or Path(tempfile.mkdtemp(prefix="articad-")) / f"{_file_name(assembly.name)}.html"), text)
+        page = _written(Path(options.out or Path(tempfile.mkdtemp(prefix="articad-")) / f"{file_name(assembly.name)}.html"), text)
     terminal.say(str(page))
     if options.browser and not webbrowser.open(page.resolve().as_uri()):
         terminal.say("No browser could be started; open the file yourself.")
@@ -126,10 +127,6 @@ def _written(file: Path, text: str) -> Path:
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(text, encoding="utf-8")
     return file
-
-
-def _file_name(name: str) -> str:
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("._")[:60] or "model"
 
 
 def _kernel_of(script: Path) -> str | None:

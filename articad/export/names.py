@@ -42,6 +42,11 @@ class Names:
         return free
 
 
+def file_name(wanted: str) -> str:
+    """Return the beginning of a file's name for a name that anybody may have given: no folders, no hidden files, at most 60 characters."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", wanted).strip("._")[:60] or "model"
+
+
 def valid_name(wanted: str) -> str:
     """Return the name with everything but ASCII letters, digits and underscores replaced."""
     plain = unicodedata.normalize("NFKD", wanted).encode("ascii", "ignore").decode()

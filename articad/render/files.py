@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
 from articad.errors import ArticadError, did_you_mean
+from articad.export.names import file_name
 from articad.render.camera import VIEWS
 from articad.render.pictures import Renderer, clean_motion, filmstrip, motion_gif, png, render_clean, render_motion, render_views
 
@@ -61,7 +62,7 @@ def write_views(
 
 
 def write_motion(assembly: Assembly, joint: str, folder: Path, *, size: int | tuple[int, int] = 320, clean: bool = False) -> list[Path]:
-    """Write `<joint>.png`, a filmstrip, and `<joint>.gif`, an animation; `clean` as in `render_clean`.
+    """Write `<joint>.png`, a filmstrip, and `<joint>.gif`, an animation, into the folder; `clean` as in `render_clean`.
 
     Raises:
         UnknownJointError: If the joint does not drive anything.
@@ -73,7 +74,8 @@ def write_motion(assembly: Assembly, joint: str, folder: Path, *, size: int | tu
     else:
         strip = filmstrip(render_motion(assembly, joint, frames=_STRIP_FRAMES, size=width))
         animation = motion_gif(render_motion(assembly, joint, frames=_ANIMATION_FRAMES, size=width))
-    return [_written(folder / f"{joint}.png", png(strip)), _written(folder / f"{joint}.gif", animation)]
+    stem = file_name(joint)
+    return [_written(folder / f"{stem}.png", png(strip)), _written(folder / f"{stem}.gif", animation)]
 
 
 def _require_known(kind: str, names: Sequence[str], known: Iterable[str]) -> None:

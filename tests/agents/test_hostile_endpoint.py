@@ -57,6 +57,8 @@ MISBEHAVIOURS: dict[str, Misbehaviour] = {
     "empty": says(b""),
     "204": says(b"", "204 No Content"),
 }
+PATIENT = ("hang", "hang after the head", "drip", "drip the head", "429 with a long Retry-After", "503 for ever", "reset", "half closed")
+"""Misbehaviours against which the pauses between tries count too; after the others there is no pause here."""
 QUESTION = Request("design", "design/1", (user("why?"),))
 
 
@@ -103,7 +105,8 @@ def started() -> None:
 @pytest.mark.parametrize("name", MISBEHAVIOURS)
 def test_memory_deadline_and_count_hold_against(name: str) -> None:
     with hostile(MISBEHAVIOURS[name]) as endpoint, watched() as more:
-        budget = Budget(LiteLLM("x", api_base=endpoint.address), calls=2, minutes=DEADLINE_S / 60)
+        pause = time.sleep if name in PATIENT else lambda _: None
+        budget = Budget(LiteLLM("x", api_base=endpoint.address, sleep=pause), calls=2, minutes=DEADLINE_S / 60)
         began = time.monotonic()
         with pytest.raises((TransportError, BudgetError)):
             budget.complete(QUESTION)

@@ -260,10 +260,12 @@ def test_a_providers_vectors_are_a_space_of_their_own_and_find_cases(tmp_path: P
         assert embedder.embed([]).shape == (0, 1)
 
 
-@pytest.mark.parametrize("above", [False, True])
-@pytest.mark.parametrize("mode", [None, "DEV"])
+@pytest.mark.parametrize(("above", "mode"), [(False, None), (True, "DEV")])
 def test_no_env_file_is_read(above: bool, mode: str | None, tmp_path: Path) -> None:
-    """Where a program has no file, as here, the search for `.env` begins in the working folder; else beside litellm."""
+    """Where a program has no file, as here, the search for `.env` begins in the working folder; else beside litellm.
+
+    Wherever the file is, nothing looks for one: that no loading begins is what holds for every place.
+    """
     here = tmp_path / "a" / "b"
     here.mkdir(parents=True)
     (tmp_path / "a" / ".env" if above else here / ".env").write_text(
