@@ -40,6 +40,7 @@ _MODULE_OF = {
     "TriMesh": "geometry.mesh",
     "Waiver": "plan.resolve",
     "ball": "kinematics.declare",
+    "assembly_order": "entry",
     "audit": "entry",
     "build": "assembly",
     "certify": "entry",
@@ -105,6 +106,7 @@ if TYPE_CHECKING:
     from articad.connectors.attachment import Attachment as Attachment
     from articad.connectors.connector import Connector as Connector
     from articad.connectors.se3 import SE3 as SE3
+    from articad.entry import assembly_order as assembly_order
     from articad.entry import audit as audit
     from articad.entry import certify as certify
     from articad.entry import read as read

@@ -18,6 +18,9 @@ from articad.arrays import FloatArray
 from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify, constrained_joints
 from articad.certificates.fits import PROOF_SECONDS, FitReport, certified_fits, check_fits, followed
 from articad.connectors.se3 import SE3
+from articad.disassembly.order import assembly_order
+from articad.disassembly.poses import end_poses
+from articad.disassembly.steps import AssemblyOrder
 from articad.errors import KinematicsError, LimitError, PlanError, UnknownJointError
 from articad.findings import Findings
 from articad.geometry.mesh import TriMesh
@@ -551,6 +554,15 @@ class Assembly:
         if joints is not None:
             return made
         return replace(made, findings=made.findings + Findings(lost_meshes(scene, self.mechanism)))
+
+    def assembly_order(self) -> AssemblyOrder:
+        """Find an order in which the parts go together at rest, with a proven path for each, or the parts that block each other.
+
+        Paths are straight; each step's `strength` says whether it is proven. The environment is not in the way.
+        """
+        product = self.product()
+        poses = Poses(product.mechanism.parts, product.mechanism.at_rest)
+        return assembly_order(product.scene(), poses, product.ground, name=product.name, others=end_poses(product.mechanism))
 
     def certify(
         self,

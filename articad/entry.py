@@ -1,4 +1,4 @@
-"""Operations on a file, a folder or an assembly: read, audit, certify, simulate.
+"""Operations on a file, a folder or an assembly: read, audit, certify, simulate, find an order of assembly.
 
 Each function takes an assembly, a file in any format that is read, a plan folder, or a run folder.
 """
@@ -15,6 +15,7 @@ from articad.assembly import Assembly
 from articad.auditing.examine import AUDITED, AuditOptions, audit_assembly, audit_file, audit_made
 from articad.auditing.report import Audit
 from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate
+from articad.disassembly.steps import AssemblyOrder
 from articad.plan.schema import AssemblyPlan
 from articad.runs.record import assembly_of
 from articad.runs.run import REQUEST_FILE, Run
@@ -23,7 +24,7 @@ from articad.simulation.loading import Engine
 from articad.simulation.trial import SECONDS
 from articad.simulation.verdict import SimulationVerdict
 
-__all__ = ["audit", "certify", "read", "simulate"]
+__all__ = ["assembly_order", "audit", "certify", "read", "simulate"]
 
 
 def read(
@@ -95,6 +96,15 @@ def certify(
     """
     assembly = target if isinstance(target, Assembly) else read(target)
     return assembly.certify(joints, pairs=pairs, epsilon=epsilon, budget=budget)
+
+
+def assembly_order(target: str | Path | Assembly) -> AssemblyOrder:
+    """Find an order in which the parts go together, with a proven path for each; see `Assembly.assembly_order`.
+
+    Args:
+        target: As for `read`, or an assembly.
+    """
+    return (target if isinstance(target, Assembly) else read(target)).assembly_order()
 
 
 def simulate(target: str | Path | Assembly, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> SimulationVerdict:

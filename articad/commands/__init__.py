@@ -9,6 +9,7 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from articad.commands import (  # noqa: F401 - registers them
+    assembling,
     auditing,
     batching,
     building,

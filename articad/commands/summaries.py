@@ -17,6 +17,15 @@ if TYPE_CHECKING:
 
 PAGE_FILE = "report.html"  # of a run
 _CELL = 60  # characters of a value in a table
+_SAME = 1e-6  # of components of unit vectors
+_WAYS = {
+    "down (-z)": (0.0, 0.0, -1.0),
+    "up (+z)": (0.0, 0.0, 1.0),
+    "along +x": (1.0, 0.0, 0.0),
+    "along -x": (-1.0, 0.0, 0.0),
+    "along +y": (0.0, 1.0, 0.0),
+    "along -y": (0.0, -1.0, 0.0),
+}
 _NEAREST = 3  # pairs, or coordinates that follow, that are shown without -v
 
 
@@ -84,6 +93,31 @@ def print_joints(rows: list[Report], terminal: Terminal) -> None:
         if row["engaged_share"] is not None:
             told.append(f"{100 * row['engaged_share']:.0f} % of the guide engaged at the ends")
         terminal.say(f"  {row['joint']}: {row['type']}, {row['verdict']}; {'; '.join(told)}")
+
+
+def print_order(report: Report, terminal: Terminal) -> None:
+    """Print the steps of an order of assembly, each with its path."""
+    for step in report["steps"]:
+        what = f"{step['subassembly']} ({', '.join(step['parts'])})" if step["subassembly"] else ", ".join(step["parts"])
+        if not step["moves"]:
+            terminal.say(f"{step['number']:3}. {step['assembly']}: start with {what}")
+            continue
+        path = ", then ".join(f"{_way(move['direction'])} by {move['length_mm']:.4g} mm" for move in step["moves"])
+        forced = "".join(f", {a} and {b} by {how}" for a, b, how in step["permitted"])
+        terminal.say(f"{step['number']:3}. {step['assembly']}: {what} {path}; {step['strength']}{forced}")
+    for blocked in report["blocked"]:
+        terminal.say(f"No order puts these together: {', '.join(blocked['parts'])}.")
+    if report["left_out"]:
+        terminal.say(f"Not considered, without a valid solid: {', '.join(report['left_out'])}.")
+    terminal.say(f"{len(report['steps'])} steps. Not checked: {report['not_checked'][0].lower()}{report['not_checked'][1:]}")
+
+
+def _way(direction: list[float]) -> str:
+    """Return a direction in words, such as `down (-z)`."""
+    for name, axis in _WAYS.items():
+        if max(abs(a - b) for a, b in zip(direction, axis, strict=True)) < _SAME:
+            return name
+    return f"along ({', '.join(f'{x:.3g}' for x in direction)})"
 
 
 def print_certificate(report: Report, terminal: Terminal) -> None:

@@ -18,12 +18,12 @@ from pydantic import Field
 
 from articad.arrays import FloatArray
 from articad.assembly import Assembly
+from articad.disassembly.ways import Ways, ways_out
 from articad.interference.gauge import Gauge
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.fields import PlanObject
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
-from articad_bench.captivity import escapes
 from articad_bench.check import Bounds, Vector, in_words
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
@@ -385,9 +385,9 @@ class Captive(Check):
         return f"{in_words(self.number)} moving parts are held by shape"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        scene = subject.scene
         moving = {joint.child for joint in _moving(subject)}
-        free = [name for name in subject.shaped if name in moving and any(way.free for way in escapes(scene, subject.rest, name))]
+        ways = Ways(subject.scene, subject.rest)
+        free = [name for name in subject.shaped if name in moving and any(way.free for way in ways_out(ways, name))]
         held = len([name for name in subject.shaped if name in moving]) - len(free)
         return self.number[0] <= held <= self.number[1], f"{held}" + (f" (free: {', '.join(free)})" if free else "")
 

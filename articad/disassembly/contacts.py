@@ -1,0 +1,206 @@
+"""How far one surface moves in a straight line before it meets another: a closed formula for triangles.
+
+Seen along the direction of motion, two triangles overlap in a convex polygon, and their heights are linear on it. So the travel between
+them, the difference of the heights, has its extremes at the corners of that polygon: a corner of one triangle inside the other, or a
+crossing of two edges. The smallest travel over all pairs of triangles is exact up to rounding; nothing is stepped or sampled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from articad.arrays import BoolArray, FloatArray, IntArray
+
+__all__ = ["Outline", "first_contacts"]
+
+_GROUP: Final = 8  # triangles that share a box
+_AT_ONCE: Final = 1 << 12  # pairs of triangles
+_GROUPS_AT_ONCE: Final = 1 << 10  # pairs of groups of triangles
+_BOXES_AT_ONCE: Final = 1 << 21  # pairs of boxes
+_FLAT: Final = 1e-12  # of squared lengths: twice the area of a triangle that is seen edge-on
+_EDGE: Final = 1e-9  # of coordinates on edges and in triangles
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """Triangles seen along a direction.
+
+    Attributes:
+        flat: Corners across the direction, `(T, 3, 2)` [mm].
+        height: Corners along it, `(T, 3)` [mm].
+    """
+
+    flat: FloatArray
+    height: FloatArray
+
+    @classmethod
+    def of(cls, corners: FloatArray, direction: FloatArray) -> Outline:
+        """Return triangles `(T, 3, 3)` [mm] as seen along a unit vector `(3,)`."""
+        return cls(corners @ _across(direction), corners @ direction)
+
+    def shifted(self, offset: FloatArray, direction: FloatArray) -> Outline:
+        """Return the triangles moved by an offset `(3,)` [mm], seen along the same direction `(3,)`."""
+        return Outline(self.flat + offset @ _across(direction), self.height + offset @ direction)
+
+    @cached_property
+    def low(self) -> FloatArray:
+        """Lower corners of the triangles' boxes, `(T, 2)`."""
+        return np.asarray(self.flat.min(axis=1))
+
+    @cached_property
+    def high(self) -> FloatArray:
+        """Upper corners of the triangles' boxes, `(T, 2)`."""
+        return np.asarray(self.flat.max(axis=1))
+
+    @cached_property
+    def bottom(self) -> FloatArray:
+        """Least heights, `(T,)`."""
+        return np.asarray(self.height.min(axis=1))
+
+    @cached_property
+    def top(self) -> FloatArray:
+        """Largest heights, `(T,)`."""
+        return np.asarray(self.height.max(axis=1))
+
+    @cached_property
+    def box(self) -> tuple[FloatArray, FloatArray]:
+        """Lower and upper corner of the box about all, `(2,)` each."""
+        return self.low.min(axis=0), self.high.max(axis=0)
+
+    def inside(self, low: FloatArray, high: FloatArray) -> IntArray:
+        """Return the triangles whose boxes meet a box, neighbours after each other, `(k,)`."""
+        found = np.flatnonzero(((self.low <= high) & (self.high >= low)).all(axis=1))
+        middle = (self.low[found] + self.high[found]) / 2
+        cell = np.clip((middle - low) / np.maximum(high - low, 1e-12) * 1023, 0, 1023).astype(np.int64)
+        return np.asarray(found[np.argsort(_interleaved(cell[:, 0]) | (_interleaved(cell[:, 1]) << 1), kind="stable")])
+
+
+def _across(direction: FloatArray) -> FloatArray:
+    """Return two unit vectors across a direction as columns, `(3, 2)`."""
+    x = np.cross(np.eye(3)[int(np.abs(direction).argmin())], direction)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(direction, x)], axis=1)
+
+
+def first_contacts(a: Outline, b: Outline) -> tuple[float, float]:
+    """Return how far a moves before it meets b: forwards along the direction of both outlines, and backwards [mm].
+
+    Infinity if they never meet; zero both ways if they meet where they are.
+    """
+    low, high = np.maximum(a.box[0], b.box[0]), np.minimum(a.box[1], b.box[1])
+    forwards = backwards = np.inf
+    if (low > high).any():
+        return forwards, backwards
+    rows, columns = a.inside(low, high), b.inside(low, high)
+    groups, near, far = _meeting(a, b, rows, columns)
+    # those that may be next to each other first: most others are then farther than what is known
+    order = np.argsort(np.maximum(near, -far), kind="stable")
+    for first in range(0, len(order), _GROUPS_AT_ONCE):
+        some = order[first : first + _GROUPS_AT_ONCE]
+        some = some[_decides(near[some], far[some], forwards, backwards)]
+        i, j = _expanded(a, b, rows, columns, groups[some])
+        decides = _decides(b.bottom[j] - a.top[i], b.top[j] - a.bottom[i], forwards, backwards)
+        i, j = i[decides], j[decides]
+        for at in range(0, len(i), _AT_ONCE):
+            p, q = i[at : at + _AT_ONCE], j[at : at + _AT_ONCE]
+            travel = _travels(a.flat[p], a.height[p], b.flat[q], b.height[q])
+            least, most = np.fmin.reduce(travel, axis=1, initial=np.inf), np.fmax.reduce(travel, axis=1, initial=-np.inf)
+            if bool(((least <= 0) & (most >= 0)).any()):
+                return 0.0, 0.0
+            forwards = min(forwards, float(least[least > 0].min(initial=np.inf)))
+            backwards = min(backwards, -float(most[most < 0].max(initial=-np.inf)))
+    return forwards, backwards
+
+
+def _decides(near: FloatArray, far: FloatArray, forwards: float, backwards: float) -> BoolArray:
+    """Return which travels between `near` and `far` may be shorter than those known, or of both signs."""
+    return np.asarray(((near <= 0) & (far >= 0)) | ((near > 0) & (near < forwards)) | ((far < 0) & (-far < backwards)))
+
+
+def _meeting(a: Outline, b: Outline, rows: IntArray, columns: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return the pairs of groups of triangles whose boxes meet, `(G, 2)`, and their least and largest travels, `(G,)` each."""
+    found: list[IntArray] = [np.zeros((0, 2), dtype=np.int64)]
+    if not len(rows) or not len(columns):
+        return found[0], np.zeros(0), np.zeros(0)
+    starts_a, starts_b = (np.arange(0, len(chosen), _GROUP) for chosen in (rows, columns))
+    low_a, high_a = np.minimum.reduceat(a.low[rows], starts_a), np.maximum.reduceat(a.high[rows], starts_a)
+    low_b, high_b = np.minimum.reduceat(b.low[columns], starts_b), np.maximum.reduceat(b.high[columns], starts_b)
+    step = max(1, _BOXES_AT_ONCE // len(starts_b))
+    for first in range(0, len(starts_a), step):
+        some = slice(first, first + step)
+        near = np.ones((len(low_a[some]), len(low_b)), dtype=bool)
+        for k in (0, 1):
+            near &= (low_a[some, None, k] <= high_b[None, :, k]) & (low_b[None, :, k] <= high_a[some, None, k])
+        found.append(np.argwhere(near) + np.array([first, 0]))
+    groups = np.concatenate(found)
+    i, j = groups.T
+    bottom_a, top_a = np.minimum.reduceat(a.bottom[rows], starts_a)[i], np.maximum.reduceat(a.top[rows], starts_a)[i]
+    bottom_b, top_b = np.minimum.reduceat(b.bottom[columns], starts_b)[j], np.maximum.reduceat(b.top[columns], starts_b)[j]
+    return groups, bottom_b - top_a, top_b - bottom_a
+
+
+def _expanded(a: Outline, b: Outline, rows: IntArray, columns: IntArray, groups: IntArray) -> tuple[IntArray, IntArray]:
+    """Return the pairs of triangles of pairs of groups whose boxes meet, `(K,)` each."""
+    within = np.arange(_GROUP)
+    i, j = np.broadcast_arrays(
+        (groups[:, 0] * _GROUP)[:, None, None] + within[None, :, None], (groups[:, 1] * _GROUP)[:, None, None] + within[None, None, :]
+    )
+    kept = (i < len(rows)) & (j < len(columns))
+    i, j = rows[i[kept]], columns[j[kept]]
+    meet = ((a.low[i] <= b.high[j]) & (b.low[j] <= a.high[i])).all(axis=1)
+    return i[meet], j[meet]
+
+
+def _travels(p: FloatArray, hp: FloatArray, q: FloatArray, hq: FloatArray) -> FloatArray:
+    """Return the differences of the heights of q and p at the corners of their common polygons, `(K, 15)`; NaN where there is no corner.
+
+    Args:
+        p: Corners across the direction, `(K, 3, 2)`.
+        hp: Their heights, `(K, 3)`.
+        q: Those of the other triangles.
+        hq: Their heights.
+    """
+    over_p, within_q = _heights(p, q, hq)
+    over_q, within_p = _heights(q, p, hp)
+    corners = [np.where(within_q, over_p - hp, np.nan), np.where(within_p, hq - over_q, np.nan)]
+    # edges: p_i + s e = q_j + t g, with s = (q_j - p_i) x g / (e x g) and t = (q_j - p_i) x e / (e x g)
+    e, g = np.roll(p, -1, axis=1) - p, np.roll(q, -1, axis=1) - q
+    de, dg = np.roll(hp, -1, axis=1) - hp, np.roll(hq, -1, axis=1) - hq
+    apart = q[:, None, :, :] - p[:, :, None, :]
+    det = _cross(e[:, :, None], g[:, None])
+    size = np.maximum(np.einsum("kei,kei->ke", e, e)[:, :, None] * np.einsum("kgi,kgi->kg", g, g)[:, None], 1e-300)
+    crossing = det * det > _FLAT * size
+    det = np.where(crossing, det, 1.0)
+    s, t = _cross(apart, g[:, None]) / det, _cross(apart, e[:, :, None]) / det
+    crossing &= (s >= -_EDGE) & (s <= 1 + _EDGE) & (t >= -_EDGE) & (t <= 1 + _EDGE)
+    between = (hq[:, None] + t * dg[:, None]) - (hp[:, :, None] + s * de[:, :, None])
+    return np.concatenate([*corners, np.where(crossing, between, np.nan).reshape(len(p), 9)], axis=1)
+
+
+def _heights(points: FloatArray, triangle: FloatArray, height: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the heights of triangles over points `(K, 3, 2)`, and which points are inside, `(K, 3)` each."""
+    a, u, v = triangle[:, :1], triangle[:, 1:2] - triangle[:, :1], triangle[:, 2:] - triangle[:, :1]
+    det = _cross(u, v)
+    size = np.maximum((u * u).sum(axis=2) * (v * v).sum(axis=2), 1e-300)
+    solid = det * det > _FLAT * size
+    det = np.where(solid, det, 1.0)
+    away = points - a
+    s, t = _cross(away, v) / det, _cross(u, away) / det
+    inside = solid & (s >= -_EDGE) & (t >= -_EDGE) & (s + t <= 1 + _EDGE)
+    return height[:, :1] + s * (height[:, 1:2] - height[:, :1]) + t * (height[:, 2:] - height[:, :1]), inside
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+def _interleaved(numbers: IntArray) -> IntArray:
+    """Return numbers below 1024 with a zero bit between each two of their bits (Morton order)."""
+    spread = (numbers | (numbers << 8)) & 0x00FF00FF
+    spread = (spread | (spread << 4)) & 0x0F0F0F0F
+    spread = (spread | (spread << 2)) & 0x33333333
+    return np.asarray((spread | (spread << 1)) & 0x55555555)

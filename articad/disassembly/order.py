@@ -1,0 +1,346 @@
+"""An order of assembly: take everything apart, one set of parts after the other, and read that backwards.
+
+Parts that block each other along a direction form a graph (Wilson and Latombe 1994, directional blocking graphs). A set that blocks itself
+only, a strongly connected component from which no edge leaves, can be removed in that direction as a whole. So sub-assemblies need no
+search: they are components of more than one part. Each removal is proven all along its path by `Ways`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+from articad.arrays import FloatArray
+from articad.connectors.se3 import SE3
+from articad.disassembly.poses import OtherPose
+from articad.disassembly.steps import AssemblyOrder, AssemblyStep, Blocked, Move, StopRow, Vector3
+from articad.disassembly.ways import Ways, distinct, ways_of
+from articad.geometry.faces import faces_of
+from articad.interference.relations import Groups
+from articad.interference.scene import Scene
+from articad.kinematics.joints import JointType
+
+__all__ = ["assembly_order"]
+
+_ROUND: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.BALL, JointType.UNIVERSAL)
+_MOST_WAYS: Final = 24  # further directions that are tried for parts that no joint's axis frees
+_ROUNDED: Final = 6  # digits of numbers in the result
+
+_FURTHER: Final = 4  # turns of directions that are tried in other configurations than rest
+_STEPS: Final = (0.98, 0.94, 0.85, 0.7, 0.5, 0.25)  # of the travel in a first direction, after which a second is tried
+_PARALLEL: Final = 1e-9  # of a cosine
+_LEAST_MM: Final = 0.3  # of the travel in a first direction: less is play
+
+Atom = tuple[str, ...]  # parts that stay together for now
+
+
+def assembly_order(
+    scene: Scene,
+    poses: Mapping[str, SE3],
+    ground: str,
+    *,
+    name: str = "assembly",
+    others: Sequence[OtherPose] = (),
+    fastenings: Mapping[str, str] | None = None,
+) -> AssemblyOrder:
+    """Return the order in which the parts go together.
+
+    Args:
+        scene: Bodies and relations of the product.
+        poses: `T_ground_part` of all parts, with z up.
+        ground: The part that everything is put onto.
+        name: Of the product.
+        others: Further configurations in which parts may be put in place, such as a door that stands open.
+        fastenings: By joint name how it is fastened, such as "snap": its two parts then do not stop each other.
+    """
+    return _Taking(scene, poses, ground, name, others, fastenings or {}).order()
+
+
+@dataclass(frozen=True)
+class _Removal:
+    """A set of atoms that leaves along a direction, after a first move if there is one."""
+
+    atoms: tuple[Atom, ...]
+    way: FloatArray
+    ways: Ways = field(compare=False)
+    at: dict[str, float]
+    first: FloatArray
+    key: tuple[float, ...] = field(compare=False)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        return tuple(name for atom in self.atoms for name in atom)
+
+
+class _Taking:
+    """Takes an assembly apart."""
+
+    def __init__(
+        self, scene: Scene, poses: Mapping[str, SE3], ground: str, name: str, others: Sequence[OtherPose], fastenings: Mapping[str, str]
+    ) -> None:
+        self.scene, self.name, self.fastenings = scene, name, fastenings
+        self.joints = tuple(joint for joint in scene.relations.joints if joint.type is not JointType.FREE)
+        by_force = {frozenset((joint.parent, joint.child)): joint.name for joint in self.joints if joint.name in fastenings}
+        self.forced = {pair: fastenings[joint] for pair, joint in by_force.items()}
+        self.ways = Ways(scene, poses, self.forced)
+        self.open = [(Ways(scene, other.poses, self.forced), other.at) for other in others]
+        self.parts = tuple(name for name in self.ways.parts if name not in scene.environment)
+        self.left_out = tuple(sorted(scene.broken))
+        self.base = ground if ground in self.parts else self._heaviest(self.parts)
+        self.height = {name: float(self.ways.points(name)[:, 2].mean()) for name in self.parts}
+        self.declared = {name: at for at, name in enumerate(self.parts)}
+        self.hops = self._hops()
+        self.blocked: list[Blocked] = []
+
+    def order(self) -> AssemblyOrder:
+        """Return the order."""
+        together: dict[str, list[str]] = {}
+        for part in self.parts:
+            together.setdefault(self.scene.relations.rigid.leader(part), []).append(part)
+        steps = list(self._steps([tuple(parts) for parts in together.values()], self.base, self.name))
+        numbered = tuple(step.model_copy(update={"number": at + 1}) for at, step in enumerate(steps))
+        return AssemblyOrder(
+            schema="articad.order/1",
+            name=self.name,
+            base=self.base,
+            steps=numbered,
+            blocked=tuple(self.blocked),
+            left_out=self.left_out,
+        )
+
+    def _steps(self, atoms: Sequence[Atom], base: str, name: str) -> Iterator[AssemblyStep]:
+        """Yield the steps that put atoms together."""
+        left, removed = list(atoms), []
+        while len(left) > 1:
+            found = self._removable(left, base) or self._elsewhere(left, base) or self._in_two_moves(left, base)
+            if found is None:
+                whole = [atom for atom in left if len(atom) > 1]
+                if not whole:
+                    self._report(left)
+                    break
+                left = [(part,) for atom in left for part in atom]  # perhaps only single parts can leave
+                continue
+            removed.append(found)
+            left = [atom for atom in left if atom not in found.atoms]
+        placed = [part for atom in left for part in atom]
+        if len(left) == 1 and len(placed) > 1:  # the base is itself several parts
+            yield from self._steps([(part,) for part in placed], base, name)
+        elif len(placed) > 1:
+            yield AssemblyStep(number=0, assembly=name, parts=tuple(placed), subassembly=f"{base}_and_others", onto=(), moves=())
+        else:
+            yield AssemblyStep(number=0, assembly=name, parts=tuple(placed), onto=(), moves=())
+        for removal in reversed(removed):
+            moving, own = removal.parts, None
+            if len(moving) > 1:
+                first = min(moving, key=lambda part: (self.hops.get(part, len(self.parts)), self.declared[part]))
+                own = f"{first}_assembly"
+                inner = removal.atoms if len(removal.atoms) > 1 else [(part,) for part in moving]
+                yield from self._steps(inner, first, own)
+            yield self._step(removal, placed, name, own)
+            placed += moving
+
+    def _step(self, removal: _Removal, placed: Sequence[str], name: str, own: str | None) -> AssemblyStep:
+        moving = removal.parts
+        joints = [joint for joint in self.joints if (joint.parent in moving) != (joint.child in moving)]
+        joints = [joint for joint in joints if {joint.parent, joint.child} <= {*moving, *placed}]
+        partners = [part for part in placed if any(part in (joint.parent, joint.child) for joint in joints)]
+        ways, way, first = removal.ways, removal.way, removal.first
+        forced = tuple(
+            (a, b, self.forced[frozenset((a, b))])
+            for a in moving
+            for b in placed
+            if frozenset((a, b)) in self.forced
+            and (np.isfinite(ways.travel(a, b, way, first)) or (first.any() and np.isfinite(ways.travel(a, b, _unit(first)))))
+        )
+        along = float(first @ way)
+        moves = [
+            Move(
+                direction=_vector(-way),
+                length_mm=round(max(0.0, ways.clear_length(moving, placed, way) - along), _ROUNDED),
+                apart_mm=round(max(0.0, ways.clear_length(moving, partners or placed, way) - along), _ROUNDED),
+            )
+        ]
+        if first.any():
+            length = round(float(np.linalg.norm(first)), _ROUNDED)
+            moves.append(Move(direction=_vector(-_unit(first)), length_mm=length, apart_mm=length))
+        return AssemblyStep(
+            number=0,
+            assembly=name,
+            parts=moving,
+            subassembly=own,
+            onto=tuple(placed),
+            moves=tuple(moves),
+            at=removal.at,
+            joints=tuple(joint.name for joint in joints),
+            strength="permitted" if forced else "proven",
+            permitted=forced,
+        )
+
+    # ------------------------------------------------------------------ what can be removed
+
+    def _removable(
+        self, left: Sequence[Atom], base: str, ways: Ways | None = None, at: Mapping[str, float] | None = None
+    ) -> _Removal | None:
+        """Return the best set of atoms that can leave in a straight line, or None.
+
+        Sets that leave the rest connected come first, then those that leave upwards, so that parts are lowered into place, then sideways.
+
+        Args:
+            left: The atoms.
+            base: The part that stays.
+            ways: The parts at one pose; at rest by default.
+            at: Values of the drivers of that pose.
+        """
+        ways, best = ways or self.ways, None
+        for rank, directions in enumerate(self._directions(left, ways)):
+            if rank >= _FURTHER and ways is not self.ways:
+                break
+            for way in directions:
+                for atoms, direction in self._leaving(left, base, way, ways):
+                    found = _Removal(atoms, direction, ways, dict(at or {}), np.zeros(3), self._key(atoms, left, direction, rank))
+                    if best is None or found.key < best.key:
+                        best = found
+            if best is not None and best.key[0] == 0:
+                return best
+        return best
+
+    def _elsewhere(self, left: Sequence[Atom], base: str) -> _Removal | None:
+        """Return what can leave in another configuration."""
+        for ways, at in self.open:
+            found = self._removable(left, base, ways, at)
+            if found is not None:
+                return found
+        return None
+
+    def _in_two_moves(self, left: Sequence[Atom], base: str) -> _Removal | None:
+        """Return an atom that leaves after a first move in another direction: out of a keyhole, over a lip."""
+        for atom in sorted((atom for atom in left if base not in atom), key=len):
+            rest = [name for other in left if other != atom for name in other]
+            directions = distinct([*np.eye(3), *self._joint_axes(atom, self.ways)])
+            for first in directions:
+                travel = self.ways.stop(atom, rest, first).travel
+                if not _LEAST_MM < travel < np.inf:
+                    continue
+                for share in _STEPS:
+                    moved = share * travel * first
+                    for way in directions:
+                        if abs(float(way @ first)) < 1 - _PARALLEL and np.isinf(self.ways.stop(atom, rest, way, offset=moved).travel):
+                            return _Removal((atom,), way, self.ways, {}, moved, self._key((atom,), left, way, 0))
+        return None
+
+    def _joint_axes(self, names: Iterable[str], ways: Ways) -> list[FloatArray]:
+        inside = set(names)
+        return [ways.poses[j.parent].rotation @ j.T_parent_connector.z_axis for j in self.joints if {j.parent, j.child} & inside]
+
+    def _directions(self, left: Sequence[Atom], ways: Ways) -> Iterator[FloatArray]:
+        """Yield directions in turns: up, sideways, down, along axes of joints, along normals and axes of faces."""
+        known = [*np.eye(3)]
+        yield np.array([[0.0, 0.0, 1.0]])
+        yield distinct(known[:2])
+        yield np.array([[0.0, 0.0, -1.0]])
+        names = sorted(name for atom in left for name in atom)
+        axes = self._joint_axes(names, ways)
+        yield _new(axes, known)
+        known += axes
+        yield _new([way for name in names for way in ways_of(self.scene, ways.poses, name)], known)[:_MOST_WAYS]
+        yield _new([axis for name in names for axis in self._face_axes(name, ways)], known)[:_MOST_WAYS]
+
+    def _face_axes(self, name: str, ways: Ways) -> list[FloatArray]:
+        faces = [face for face in faces_of(self.scene.bodies[name].mesh) if face.kind in ("cylinder", "plane")]
+        faces.sort(key=lambda face: -len(face.corners))
+        return [ways.poses[name].rotation @ face.axis for face in faces[:_MOST_WAYS]]
+
+    def _leaving(self, left: Sequence[Atom], base: str, way: FloatArray, ways: Ways) -> Iterator[tuple[tuple[Atom, ...], FloatArray]]:
+        """Yield the smallest sets that leave along a direction, the base not among them, and their direction."""
+        blocks = np.array([[a is not b and any(ways.blocks(p, q, way) for p in a for q in b) for b in left] for a in left])
+        count, label = connected_components(csr_array(blocks), directed=True, connection="strong")
+        if count < 2:
+            return
+        crossing = blocks & (label[:, None] != label[None])
+        for group in range(count):
+            inside = label == group
+            if crossing[inside].any():
+                continue
+            chosen, direction = inside, way
+            if any(base in left[at] for at in np.flatnonzero(inside).tolist()):
+                if not inside.all() and count == 2:  # all others leave the base, the opposite way
+                    chosen, direction = ~inside, -way
+                else:
+                    continue
+            yield tuple(left[at] for at in np.flatnonzero(chosen).tolist()), direction
+
+    def _key(self, atoms: tuple[Atom, ...], left: Sequence[Atom], way: FloatArray, rank: int) -> tuple[float, ...]:
+        names = [name for atom in atoms for name in atom]
+        rest = [name for atom in left if atom not in atoms for name in atom]
+        loose = self._pieces(rest) + self._pieces(names) - 1 > self._pieces([*names, *rest])
+        sinks = float(way[2]) < -1e-6  # it would be put in place from below
+        return (float(loose), float(sinks), float(rank), float(len(names)), -max(self.height[n] for n in names), -self.declared[names[-1]])
+
+    def _pieces(self, names: Iterable[str]) -> int:
+        """Return how many pieces joints leave of some parts."""
+        groups = Groups(names)
+        inside = set(names)
+        for joint in self.joints:
+            if {joint.parent, joint.child} <= inside:
+                groups.join(joint.parent, joint.child)
+        return len({groups.leader(name) for name in inside})
+
+    def _hops(self) -> dict[str, int]:
+        """Return over how many joints each part hangs from the base; a sub-assembly begins with the part that hangs nearest."""
+        hops, todo = {self.base: 0}, [self.base]
+        for name in todo:
+            for joint in self.joints:
+                if name in (joint.parent, joint.child):
+                    other = joint.child if name == joint.parent else joint.parent
+                    if other not in hops:
+                        hops[other] = hops[name] + 1
+                        todo.append(other)
+        return hops
+
+    def _heaviest(self, names: Sequence[str]) -> str:
+        return max(names, key=lambda name: (self.scene.bodies[name].volume, name))
+
+    # ------------------------------------------------------------------ what cannot
+
+    def _report(self, left: Sequence[Atom]) -> None:
+        """Record parts that hold each other, with what stops each."""
+        names = tuple(name for atom in left for name in atom)
+        rows: list[StopRow] = []
+        for name in names:
+            own: list[StopRow] = []
+            for way in distinct([*np.eye(3), *ways_of(self.scene, self.ways.poses, name)]):
+                stop = self.ways.stop([name], [other for other in names if other != name], way)
+                if stop.by is not None:
+                    own.append(StopRow(part=name, direction=_vector(way), travel_mm=round(stop.travel, _ROUNDED), by=stop.by))
+            rows += sorted(own, key=lambda row: -row.travel_mm)
+        self.blocked.append(Blocked(parts=names, stops=tuple(rows), remedy=self._remedy(names)))
+
+    def _remedy(self, names: Sequence[str]) -> str:
+        joints = [joint for joint in self.joints if {joint.parent, joint.child} <= set(names)]
+        round_one = next((joint for joint in joints if joint.type in _ROUND), None)
+        if round_one is not None:
+            return (
+                f"Split the bearing of {round_one.name!r}, open its side to a slot, or make its pin a part of its own; "
+                "if it snaps or is pressed into place, state that as its fastening."
+            )
+        return f"Open one side of {names[0]}, make one of the parts as two, or state the fastening of the joint that snaps or is pressed."
+
+
+def _new(axes: Iterable[FloatArray], known: Sequence[FloatArray]) -> FloatArray:
+    """Return axes and their opposites, without those that are known."""
+    rows = [axis for axis in distinct(list(axes)) if not any(min(np.linalg.norm(axis - k), np.linalg.norm(axis + k)) < 1e-6 for k in known)]
+    return np.array(rows).reshape(-1, 3)
+
+
+def _unit(way: FloatArray) -> FloatArray:
+    return np.asarray(way / np.linalg.norm(way))
+
+
+def _vector(way: FloatArray) -> Vector3:
+    x, y, z = (round(float(value), 9) + 0.0 for value in way)
+    return (x, y, z)

@@ -1,0 +1,153 @@
+"""The form of an order of assembly: its steps with their paths, and the parts that no order can take."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from articad.findings import Finding, Findings
+
+__all__ = ["AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow"]
+
+Vector3 = tuple[float, float, float]
+
+NOT_CHECKED = "Parts are rigid; room for hands and tools, the order of adhesives, and whether a step needs a fixture are not checked."
+
+
+class _Form(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Move(_Form):
+    """One piece of a path, in the order of assembly.
+
+    Attributes:
+        kind: "straight", or "screw": along the direction while turning about it.
+        direction: Unit vector in the ground frame, towards the place of the part.
+        length_mm: From where the part is clear of everything.
+        apart_mm: From where it is clear of the parts that it is joined to: enough for an exploded picture.
+        turns: Of a screw, right-handed about the direction; 0 for a straight move.
+        axis_point: A point on the axis of a screw [mm]; None for a straight move.
+    """
+
+    kind: Literal["straight", "screw"] = "straight"
+    direction: Vector3
+    length_mm: float
+    apart_mm: float
+    turns: float = 0.0
+    axis_point: Vector3 | None = None
+
+
+class AssemblyStep(_Form):
+    """One step: parts that are put in place together.
+
+    Attributes:
+        number: From 1.
+        assembly: What is being assembled: the product, or the name of a sub-assembly.
+        parts: The parts that move; several are a sub-assembly that earlier steps have made.
+        subassembly: Its name if they are several.
+        onto: The parts that are in place.
+        moves: The path; empty if nothing is in place yet.
+        at: Values of the drivers at which the step is done, such as a door that stands open [rad, mm]; the others, and all if empty, at rest.
+        joints: Joints between the parts and those in place.
+        strength: "proven": free of collision all along the path; "permitted": so but for pairs that are fastened by force, such as a snap.
+        permitted: These pairs, with their fastening.
+    """
+
+    number: int
+    assembly: str
+    parts: tuple[str, ...]
+    subassembly: str | None = None
+    onto: tuple[str, ...]
+    moves: tuple[Move, ...]
+    at: dict[str, float] = Field(default_factory=dict)
+    joints: tuple[str, ...] = ()
+    strength: Literal["proven", "permitted"] = "proven"
+    permitted: tuple[tuple[str, str, str], ...] = ()
+
+
+class StopRow(_Form):
+    """How far a part moves in one direction before another stops it.
+
+    Attributes:
+        part: The part.
+        direction: Unit vector in the ground frame, out of its place.
+        travel_mm: How far it moves.
+        by: The part in its way.
+    """
+
+    part: str
+    direction: Vector3
+    travel_mm: float
+    by: str
+
+
+class Blocked(_Form):
+    """Parts that cannot be taken apart: no order puts them together.
+
+    Attributes:
+        parts: The parts that hold each other.
+        stops: For each of them the directions that were tried, those of longest travel first.
+        remedy: What can be done.
+    """
+
+    parts: tuple[str, ...]
+    stops: tuple[StopRow, ...]
+    remedy: str
+
+
+class AssemblyOrder(_Form):
+    """In which order the parts of an assembly go together, and how each gets to its place.
+
+    Attributes:
+        form: Version of this form, `schema` in JSON.
+        name: Of the assembly.
+        base: The part that everything is put onto.
+        steps: In order; a sub-assembly is made before it is put in place.
+        blocked: Sets of parts that no order can take; they are put in place together.
+        left_out: Parts without a valid solid, of which nothing is known.
+        not_checked: What this does not say.
+    """
+
+    form: Literal["articad.order/1"] = Field("articad.order/1", alias="schema")
+    name: str
+    base: str
+    steps: tuple[AssemblyStep, ...]
+    blocked: tuple[Blocked, ...] = ()
+    left_out: tuple[str, ...] = ()
+    not_checked: str = NOT_CHECKED
+
+    @property
+    def ok(self) -> bool:
+        """Whether every part can be put in place."""
+        return not self.blocked and not self.left_out
+
+    @property
+    def findings(self) -> Findings:
+        """A warning for each set of parts that no order can take."""
+        return Findings(_finding(blocked) for blocked in self.blocked)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON document, with its findings."""
+        document = self.model_dump(mode="json", by_alias=True)
+        return {"schema": document.pop("schema"), "ok": self.ok, "findings": [finding.to_json() for finding in self.findings], **document}
+
+    @classmethod
+    def from_json(cls, document: dict[str, Any]) -> AssemblyOrder:
+        """Return the order that `to_json` wrote."""
+        return cls.model_validate({key: value for key, value in document.items() if key not in {"ok", "findings"}})
+
+
+def _finding(blocked: Blocked) -> Finding:
+    best: dict[str, StopRow] = {}
+    for row in blocked.stops:
+        best.setdefault(row.part, row)
+    ways = "; ".join(f"{row.part} moves {row.travel_mm:.3g} mm at most before {row.by} stops it" for row in best.values())
+    return Finding(
+        code="W_NOT_INSERTABLE",
+        where=f"parts.{blocked.parts[0]}",
+        parts=blocked.parts,
+        message=f"{' and '.join(blocked.parts)} cannot be put together by moves in straight lines: {ways}.",
+        hint=blocked.remedy,
+    )

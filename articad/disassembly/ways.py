@@ -1,0 +1,229 @@
+"""The ways that parts have past each other in straight lines, each proven for the whole way.
+
+One of two surfaces is moved inwards by the depth τ that the pair may overlap (`articad.interference.surface`). If it meets the other
+nowhere on its way, no point of one part is ever deeper than τ in the other, provided that the parts do not overlap by more at the start.
+The travel of a pair depends on no third part, so each is computed once, whatever the order of removal.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from articad.arrays import FloatArray
+from articad.connectors.se3 import SE3
+from articad.disassembly.contacts import Outline, first_contacts
+from articad.interference.report import rounded
+from articad.interference.scene import Scene
+from articad.interference.surface import inwards
+
+__all__ = ["CLEAR_MM", "Stop", "WayOut", "Ways", "ways_of", "ways_out"]
+
+CLEAR_MM: Final = 1.0  # a part this far beyond everything else has left
+SAME_DIRECTION: Final = 1e-6  # length of the difference of unit vectors
+
+
+class Stop(NamedTuple):
+    """What stops parts that move in a straight line.
+
+    Attributes:
+        travel: How far they move before [mm]; infinity if nothing stops them.
+        part: The moving part that is stopped; None if nothing stops them.
+        by: The part in its way.
+    """
+
+    travel: float
+    part: str | None = None
+    by: str | None = None
+
+
+@dataclass(frozen=True)
+class WayOut:
+    """One direction in which a part may leave, and what stops it.
+
+    Attributes:
+        part: The part.
+        direction: In the ground frame, of unit length.
+        travel: How far it moves [mm]; infinity if it leaves.
+        blocker: The first part in its way.
+    """
+
+    part: str
+    direction: tuple[float, float, float]
+    travel: float
+    blocker: str | None
+
+    @property
+    def free(self) -> bool:
+        """Whether the part leaves in this direction."""
+        return math.isinf(self.travel)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return a row of a report; the travel of a part that leaves is null."""
+        return {
+            "part": self.part,
+            "direction": [rounded(x) for x in self.direction],
+            "free": self.free,
+            "blocker": self.blocker,
+            "travel_mm": None if self.free else rounded(self.travel),
+        }
+
+
+class Ways:
+    """The straight ways of the parts of a scene at one pose.
+
+    Args:
+        scene: Bodies and relations.
+        poses: `T_ground_part` of all parts.
+        permitted: Pairs of parts that do not stop each other: they snap, are pressed or screwed together.
+    """
+
+    def __init__(self, scene: Scene, poses: Mapping[str, SE3], permitted: Iterable[frozenset[str]] = ()) -> None:
+        self.scene, self.poses, self.permitted = scene, poses, frozenset(permitted)
+        self.parts = tuple(name for name in scene.bodies if name not in scene.broken and name in poses)
+        self._corners: dict[tuple[str, float], FloatArray] = {}
+        self._outlines: dict[tuple[str, float, int], Outline] = {}
+        self._directions: list[FloatArray] = []
+        self._known: dict[tuple[str, str, int, tuple[float, ...]], tuple[float, float]] = {}
+
+    def travel(self, part: str, other: str, direction: FloatArray, offset: FloatArray | None = None) -> float:
+        """Return how far a part moves along a unit vector `(3,)` before it meets another part [mm]; infinity if it never does.
+
+        Args:
+            part: The part that moves.
+            other: The part that stays.
+            direction: Unit vector `(3,)`.
+            offset: By which the part has moved before `(3,)` [mm].
+        """
+        at, sign = self._index(direction)
+        a, b = sorted((part, other))
+        before = np.zeros(3) if offset is None else offset
+        if part != a:
+            sign, before = -sign, -before  # the other way round, the other part moves backwards
+        key = (a, b, at, tuple(before.tolist()) if before.any() else ())
+        if key not in self._known:
+            self._known[key] = self._measured(a, b, at, before)
+        return self._known[key][0 if sign > 0 else 1]
+
+    def stop(
+        self,
+        moving: Iterable[str],
+        staying: Iterable[str],
+        direction: FloatArray,
+        *,
+        offset: FloatArray | None = None,
+        strict: bool = False,
+    ) -> Stop:
+        """Return what first stops parts that move together.
+
+        Args:
+            moving: Names of the parts.
+            staying: Names of the parts that do not move.
+            direction: Unit vector `(3,)`.
+            offset: By which they have moved before `(3,)` [mm].
+            strict: Whether permitted pairs stop each other, too.
+        """
+        staying = tuple(staying)
+        first = Stop(math.inf)
+        for part in moving:
+            for other in staying:
+                if not strict and frozenset((part, other)) in self.permitted:
+                    continue
+                travel = self.travel(part, other, direction, offset)
+                if travel < first.travel:
+                    first = Stop(travel, part, other)
+        return first
+
+    def blocks(self, part: str, other: str, direction: FloatArray) -> bool:
+        """Return whether another part stops a part on its way to infinity."""
+        return frozenset((part, other)) not in self.permitted and math.isfinite(self.travel(part, other, direction))
+
+    def points(self, part: str) -> FloatArray:
+        """Return the vertices of a part in the ground frame, `(V, 3)` [mm]."""
+        return np.asarray(self.poses[part].apply(self.scene.bodies[part].mesh.vertices))
+
+    def clear_length(self, moving: Iterable[str], staying: Iterable[str], direction: FloatArray) -> float:
+        """Return how far parts must move along a direction until they are wholly beyond those that stay [mm]."""
+        last = max((float((self.points(name) @ direction).max()) for name in staying), default=-math.inf)
+        first = min((float((self.points(name) @ direction).min()) for name in moving), default=math.inf)
+        return max(0.0, last - first + CLEAR_MM) if math.isfinite(last - first) else 0.0
+
+    def depth(self, a: str, b: str) -> float:
+        """Return the depth of overlap that is allowed for a pair [mm]."""
+        waiver = self.scene.relations.waiver(a, b)
+        allowed = self.scene.tolerated(a, b)
+        return allowed if waiver is None else max(allowed, waiver.max_depth + self.scene.deflection_of(a, b))
+
+    def _measured(self, a: str, b: str, at: int, offset: FloatArray) -> tuple[float, float]:
+        moved = self._outline(a, self.depth(a, b), at)
+        if offset.any():
+            moved = moved.shifted(offset, self._directions[at])
+        return first_contacts(moved, self._outline(b, 0.0, at))
+
+    def _outline(self, part: str, depth: float, at: int) -> Outline:
+        key = (part, depth, at)
+        if key not in self._outlines:
+            self._outlines[key] = Outline.of(self._placed(part, depth), self._directions[at])
+        return self._outlines[key]
+
+    def _placed(self, part: str, depth: float) -> FloatArray:
+        key = (part, depth)
+        if key not in self._corners:
+            mesh = self.scene.bodies[part].mesh
+            vertices = mesh.vertices if depth == 0 else mesh.vertices + inwards(mesh, depth)
+            self._corners[key] = np.asarray(self.poses[part].apply(vertices))[mesh.triangles]
+        return self._corners[key]
+
+    def _index(self, direction: FloatArray) -> tuple[int, int]:
+        """Return the number of a direction or of its opposite, and the sign."""
+        for at, known in enumerate(self._directions):
+            for sign in (1, -1):
+                if float(np.linalg.norm(direction - sign * known)) < SAME_DIRECTION:
+                    return at, sign
+        self._directions.append(np.asarray(direction, dtype=np.float64))
+        return len(self._directions) - 1, 1
+
+
+def ways_of(scene: Scene, poses: Mapping[str, SE3], part: str) -> FloatArray:
+    """Return directions in which a part may leave, in the ground frame, `(n, 3)`: axes of its joints, of the part and of the ground.
+
+    Each comes with its opposite, and none twice.
+    """
+    axes: list[FloatArray] = []
+    for joint in scene.relations.joints:
+        if part in (joint.parent, joint.child):
+            mine = joint.T_parent_connector if part == joint.parent else joint.T_child_connector
+            axes += list((poses[part] @ mine).rotation.T[::-1])  # z before y and x: parts slide along their joints' axes
+    return distinct([*axes, *poses[part].rotation.T, *np.eye(3)])
+
+
+def distinct(axes: Sequence[FloatArray]) -> FloatArray:
+    """Return each of some unit vectors and its opposite once, `(n, 3)`."""
+    found: list[FloatArray] = []
+    for axis in axes:
+        for way in (axis, -axis):
+            if not any(np.linalg.norm(way - known) < SAME_DIRECTION for known in found):
+                found.append(np.asarray(way))
+    return np.array(found).reshape(-1, 3)
+
+
+def ways_out(ways: Ways, part: str, *, among: Iterable[str] | None = None, directions: FloatArray | None = None) -> tuple[WayOut, ...]:
+    """Return for each direction how far a part can leave.
+
+    Args:
+        ways: The parts.
+        part: The part that leaves.
+        among: Parts that stay; all others by default.
+        directions: Unit vectors, `(n, 3)`; by default those of `ways_of`.
+    """
+    others = [name for name in (ways.parts if among is None else among) if name != part]
+    rows = ways_of(ways.scene, ways.poses, part) if directions is None else np.asarray(directions, dtype=np.float64)
+    found = []
+    for row in rows:
+        stop = ways.stop([part], others, row)
+        found.append(WayOut(part, (float(row[0]), float(row[1]), float(row[2])), stop.travel, stop.by))
+    return tuple(found)

@@ -1,0 +1,63 @@
+"""The straight travel between two surfaces, against FCL's distances along the way."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from articad.connectors import SE3
+from articad.disassembly.contacts import Outline, first_contacts
+from articad.geometry import TriMesh
+from articad.geometry.shapes import box, cylinder, tube
+from articad.interference.body import body_of
+from articad.interference.overlap import distance
+from tests.interference.mechanisms import random_rotation
+
+SHAPES = (box(4, 7, 11), cylinder(5, 9, 24), tube(4, 6, 8, 24))
+
+
+def corners(mesh: TriMesh, T: SE3) -> np.ndarray:
+    return np.asarray(T.apply(mesh.vertices))[mesh.triangles]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_surfaces_touch_after_their_travel_and_are_apart_before(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    a, b = (SHAPES[k] for k in rng.integers(0, len(SHAPES), 2))
+    T_a = SE3.from_translation(rng.uniform(-3, 3, 3)) @ random_rotation(rng)
+    way = rng.normal(size=3)
+    way /= np.linalg.norm(way)
+    T_b = SE3.from_translation(rng.uniform(20, 30) * way + rng.uniform(-4, 4, 3)) @ random_rotation(rng)
+    forwards, backwards = first_contacts(Outline.of(corners(a, T_a), way), Outline.of(corners(b, T_b), way))
+    assert math.isinf(backwards)
+
+    def gap(travel: float) -> float:
+        moved = SE3.from_translation(travel * way) @ T_a
+        return distance(body_of(a), body_of(b), moved.inverse() @ T_b)
+
+    if math.isinf(forwards):
+        assert min(gap(t) for t in np.linspace(0, 60, 121)) > 0
+        return
+    assert gap(forwards) < 1e-6
+    assert min(gap(t) for t in np.linspace(0, forwards * (1 - 1e-6), 60)) > 0
+
+
+def test_the_opposite_motion_of_the_other_surface_has_the_same_travel() -> None:
+    way = np.array([0.0, 0.6, 0.8])
+    a, b = (Outline.of(corners(box(2, 3, 4), SE3.from_translation(at)), way) for at in ((0, 0, 0), (0.5, 9, 12)))
+    assert first_contacts(a, b)[0] == pytest.approx(first_contacts(b, a)[1])
+
+
+def test_surfaces_that_meet_where_they_are_travel_nowhere() -> None:
+    way = np.array([1.0, 0.0, 0.0])
+    a, b = (Outline.of(corners(box(2, 2, 2), SE3.from_translation(at)), way) for at in ((0, 0, 0), (1.0, 0.3, 0.2)))
+    assert first_contacts(a, b) == (0.0, 0.0)
+
+
+def test_a_pin_leaves_its_bore_along_the_axis_only() -> None:
+    bore, pin = tube(5.0, 8.0, 20.0), cylinder(4.95, 30.0)
+    for way, wanted in (((0.0, 0.0, 1.0), math.inf), ((1.0, 0.0, 0.0), 0.05)):
+        a, b = (Outline.of(corners(mesh, SE3.identity()), np.array(way)) for mesh in (pin, bore))
+        assert first_contacts(a, b)[0] == pytest.approx(wanted, abs=1e-3)

@@ -1,0 +1,134 @@
+"""Orders of assembly of small products whose order is known, and parts that no order can take."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import manifold3d as m3
+import numpy as np
+import pytest
+
+from articad.connectors import SE3
+from articad.disassembly.order import assembly_order
+from articad.disassembly.poses import OtherPose
+from articad.disassembly.steps import AssemblyOrder, AssemblyStep
+from articad.disassembly.ways import Ways
+from articad.interference.body import body_of
+from articad.interference.overlap import overlap
+from articad.interference.scene import Scene
+from articad.kinematics.joints import Joint
+from tests.interference.mechanisms import fixed, joint, manifold_mesh
+
+IDENTITY = SE3.identity()
+
+
+def block(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> m3.Manifold:
+    return m3.Manifold.cube([x[1] - x[0], y[1] - y[0], z[1] - z[0]]).translate([x[0], y[0], z[0]])
+
+
+def ordered(solids: Mapping[str, m3.Manifold], joints: list[Joint], ground: str, *others: OtherPose, **options: object) -> AssemblyOrder:
+    scene = scene_of(solids, joints)
+    return assembly_order(scene, dict.fromkeys(solids, IDENTITY), ground, others=others, **options)  # type: ignore[arg-type]
+
+
+def scene_of(solids: Mapping[str, m3.Manifold], joints: list[Joint]) -> Scene:
+    return Scene.of({name: manifold_mesh(solid) for name, solid in solids.items()}, joints)
+
+
+def names(order: AssemblyOrder) -> list[tuple[str, ...]]:
+    return [step.parts for step in order.steps]
+
+
+def deepest(scene: Scene, step: AssemblyStep) -> float:
+    """Return how much deeper than allowed parts overlap at 60 places of each move of a step, measured by Booleans of the solids."""
+    worst, beyond = -np.inf, np.zeros(3)
+    ways = Ways(scene, dict.fromkeys(scene.bodies, IDENTITY))
+    for move in reversed(step.moves):  # out again
+        out = -np.array(move.direction)
+        for share in np.linspace(0, 1, 60):
+            T = SE3.from_translation(beyond + share * move.length_mm * out)
+            for part in step.parts:
+                for other in step.onto:
+                    found = overlap(body_of(scene.meshes[other]), body_of(scene.meshes[part]), T)
+                    worst = max(worst, found.depth - ways.depth(part, other))
+        beyond = beyond + move.length_mm * out
+    return worst
+
+
+BOX = block((0, 40), (0, 40), (0, 30)) - block((4, 36), (4, 36), (4, 31))
+INSIDE = block((10, 20), (10, 20), (4, 20))
+LID = block((0, 40), (0, 40), (30, 34))
+
+
+def test_what_is_under_a_lid_comes_before_the_lid_and_from_above() -> None:
+    solids = {"lid": LID, "thing": INSIDE, "box": BOX}
+    order = ordered(solids, [fixed("a", "box", "lid"), fixed("b", "box", "thing")], "box")
+    assert order.ok
+    assert names(order) == [("box",), ("thing",), ("lid",)]
+    assert [move.direction for step in order.steps for move in step.moves] == [(0, 0, -1)] * 2
+    assert order.steps[1].moves[0].length_mm == pytest.approx(27.0)  # 30 - 4 + 1
+    assert [step.joints for step in order.steps] == [(), ("b",), ("a",)]
+
+
+def test_every_path_is_free_where_it_is_sampled() -> None:
+    joints = [fixed("a", "box", "lid"), fixed("b", "box", "thing")]
+    solids = {"lid": LID, "thing": INSIDE, "box": BOX}
+    scene = scene_of(solids, joints)
+    assert max(deepest(scene, step) for step in ordered(solids, joints, "box").steps if step.moves) <= 0
+
+
+def test_a_thing_in_a_closed_box_is_blocked_by_the_box_and_named() -> None:
+    order = ordered({"box": BOX + LID, "thing": INSIDE}, [fixed("b", "box", "thing")], "box")
+    assert not order.ok
+    (blocked,) = order.blocked
+    assert blocked.parts == ("box", "thing")
+    up = next(row for row in blocked.stops if row.part == "thing" and row.direction == (0, 0, 1))
+    assert up.by == "box"
+    assert up.travel_mm == pytest.approx(10.0, abs=0.1)  # from 20 to 30, and the depth that may overlap
+    assert order.findings[0].code == "W_NOT_INSERTABLE"
+    assert AssemblyOrder.from_json(order.to_json()) == order
+
+
+def test_a_part_that_snaps_into_place_is_a_permitted_step() -> None:
+    order = ordered({"box": BOX + LID, "thing": INSIDE}, [fixed("b", "box", "thing")], "box", fastenings={"b": "snap"})
+    assert order.ok
+    assert order.steps[1].strength == "permitted"
+    assert order.steps[1].permitted == (("thing", "box", "snap"),)
+
+
+def test_a_t_foot_goes_through_the_wide_end_of_its_keyhole_in_two_moves() -> None:
+    slot = block((6, 34), (17, 23), (-1, 11)) + block((24, 35), (12, 28), (-1, 11)) + block((4, 36), (11, 29), (4, 8))
+    plate = block((0, 40), (0, 40), (0, 10)) - slot + block((3, 37), (10, 30), (-2, 0))
+    foot = block((8, 14), (17.5, 22.5), (4, 20)) + block((7, 15), (13, 27), (4.5, 7.5))
+    solids, joints = {"plate": plate, "foot": foot}, [fixed("f", "plate", "foot")]
+    order = ordered(solids, joints, "plate")
+    assert order.ok
+    down, along = order.steps[1].moves
+    assert down.direction == (0, 0, -1)
+    assert along.direction == (-1, 0, 0)
+    assert deepest(scene_of(solids, joints), order.steps[1]) <= 0
+
+
+def test_parts_that_lock_each_other_into_a_base_go_in_as_a_sub_assembly() -> None:
+    # a dovetailed pair that separates along y only, in a pit that is as long as the pair
+    pit = block((0, 40), (0, 40), (0, 30)) - block((5, 35), (5, 35), (5, 31))
+    key = block((15, 25), (5, 35), (10, 20))
+    left = block((5, 25), (5, 35), (5, 28)) - key
+    solids = {"pit": pit, "holder": left, "key": key}
+    order = ordered(solids, [fixed("h", "pit", "holder"), joint("k", "slider", "holder", "key")], "pit")
+    assert order.ok
+    assert names(order)[0] == ("pit",)
+    assert set(names(order)[-1]) <= {"holder", "key"}
+
+
+def test_a_drawer_that_a_door_bars_goes_in_while_the_door_is_open() -> None:
+    case = block((0, 40), (0, 60), (0, 30)) - block((4, 36), (4, 61), (4, 26))
+    thing = block((6, 34), (6, 50), (4, 24))
+    ears = block((40, 44), (50, 64), (0, 30)) - block((41, 44.1), (61, 65), (8, 22))
+    door = block((2, 43), (61.5, 63.5), (8.5, 21.5))
+    solids = {"case": case + ears, "door": door, "thing": thing}
+    joints = [joint("hinge", "revolute", "case", "door"), fixed("t", "case", "thing")]
+    opened = dict.fromkeys(solids, IDENTITY) | {"door": SE3.from_translation(np.array([42.0, 0.0, 0.0]))}
+    order = ordered(solids, joints, "case", OtherPose({"hinge": 1.5}, opened))
+    assert order.ok
+    assert names(order) in ([("case",), ("thing",), ("door",)], [("case",), ("door",), ("thing",)])
