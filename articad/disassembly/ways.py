@@ -21,13 +21,13 @@ from articad.interference.report import rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import inwards
 
-__all__ = ["CLEAR_MM", "Stop", "WayOut", "Ways", "ways_of", "ways_out"]
+__all__ = ["CLEAR_MM", "Halt", "WayOut", "Ways", "ways_of", "ways_out"]
 
 CLEAR_MM: Final = 1.0  # a part this far beyond everything else has left
 SAME_DIRECTION: Final = 1e-6  # length of the difference of unit vectors
 
 
-class Stop(NamedTuple):
+class Halt(NamedTuple):
     """What stops parts that move in a straight line.
 
     Attributes:
@@ -117,7 +117,7 @@ class Ways:
         *,
         offset: FloatArray | None = None,
         strict: bool = False,
-    ) -> Stop:
+    ) -> Halt:
         """Return what first stops parts that move together.
 
         Args:
@@ -128,14 +128,14 @@ class Ways:
             strict: Whether permitted pairs stop each other, too.
         """
         staying = tuple(staying)
-        first = Stop(math.inf)
+        first = Halt(math.inf)
         for part in moving:
             for other in staying:
                 if not strict and frozenset((part, other)) in self.permitted:
                     continue
                 travel = self.travel(part, other, direction, offset)
                 if travel < first.travel:
-                    first = Stop(travel, part, other)
+                    first = Halt(travel, part, other)
         return first
 
     def blocks(self, part: str, other: str, direction: FloatArray) -> bool:
