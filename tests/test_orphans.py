@@ -65,6 +65,7 @@ LINES: Final = (
     Line("export run --to step,usd,urdf", alone=True),
     Line("certify run --budget 600", alone=True),
     Line("check run", alone=True),
+    Line("order run", alone=True),
     Line("render run --out made", alone=True),
     Line("show run --no-browser --out made.html", alone=True),
 )
