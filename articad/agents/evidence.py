@@ -80,12 +80,12 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
     """
     scene = assembly.scene()
     checks = assembly.check(known=None if known is None else known.rest)
-    joints = Findings()
+    joints, at_rest = Findings(), checks.pairs
     if all(finding.stage == "fit" for finding in checks.findings.errors):  # what overlaps at rest overlaps in motion too
         for joint in assembly.mechanism.driving_joints:
             checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
         joints = assembly.check_joints().findings
-    found = addressed(diagnose(scene, assembly.mechanism.tree, checks.findings) + joints, assembly, scene)
+    found = addressed(diagnose(scene, assembly.mechanism.tree, checks.findings) + joints, assembly, scene, at_rest)
     joints = Findings(finding for finding in found if finding.code in HELD)
     checks = replace(checks, findings=Findings(finding for finding in found if finding.code not in HELD))
     return Evidence(checks, _sizes(assembly), joints)

@@ -5,29 +5,32 @@ Decided by proof, from the bores, pins, sockets and balls of joints and from the
 - if a dimension of its part has no effect;
 - if its part alone has nothing round about the axis of a joint, or has its bore or pin beside it;
 - if a bore or pin that makes a joint has a diameter that none of its dimensions states;
-- if such a bore is closed at a depth that its dimensions do not give.
+- if such a bore is closed at a depth that its dimensions do not give;
+- if its shape, mirrored, turned or shifted as a whole, has no fault (`misplaced`).
 
 What else is wrong about such a part may follow from that, so it waits for the script. The plan is wrong if a hole or slot is absent from a
 script that follows its order, if a fit is off by just what both surfaces differ and both have the diameters that were ordered, or if its
-gap is a clearance that the plan states. All faults of two parts go to the same author. Everything else stays open.
+gap is a clearance that the plan states, or if a dimension is out of proportion to its part (W_SCALE). All faults of two parts go to the same author. Everything else stays open.
 """
 
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple, Self
 
 import numpy as np
 
+from articad.agents.misplaced import misplaced
 from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.geometry.faces import Face
+from articad.interference.report import PairCheck
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.resolve import ResolvedPlan
+from articad.plan.usage import CLEARANCE
 from articad.realisation.bores import TILT, along, beside
 from articad.realisation.sides import Sides, sides
 
@@ -45,7 +48,6 @@ _ALIKE: Final = 0.3  # difference of radii, as a share of the larger
 _ROUNDING_MM: Final = 0.005  # of a diameter
 _PLAY_MM: Final = 0.02  # difference of a measured gap and that of the surfaces
 _WORDS: Final = {"cylinder": ("bore", "pin"), "sphere": ("socket", "ball")}
-_CLEARANCE: Final = re.compile(r"clearance|play|gap|slack|tolerance|allowance")
 
 
 class _Round(NamedTuple):
@@ -83,13 +85,14 @@ class _Joined(NamedTuple):
         return frozenset({self.joint.parent, self.joint.child})
 
 
-def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene) -> Findings:
+def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, verdicts: Iterable[PairCheck] = ()) -> Findings:
     """Send each error about two parts to whoever made it, where the parts prove it; others keep their route.
 
     Args:
         findings: Of an examination of the assembly.
         assembly: A product that was built from a plan.
         scene: The assembly's scene.
+        verdicts: Of the pairs at rest.
     """
     several = tuple(findings)
     between = {f"joints.{joint.name}": (joint.parent, joint.child) for joint in assembly.joints}
@@ -98,11 +101,28 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene) -> 
         return Findings(several)
     joined = [_Joined.of(scene, joint) for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
     departed = _departed(assembly, assembly.resolved, joined)
+    open_ones = [one for one in several if _is_open(one, assembly.resolved, departed)]
+    doubted = {name for name, part in assembly.realised.items() if part.findings.of("W_SCALE")}
+    if open_ones and (found := misplaced(assembly, scene, _sources(assembly.resolved), open_ones, verdicts, doubted=doubted)) is not None:
+        departed[found.part] = (
+            f"All faults of {found.part} are gone if its shape is {found.how} of its frame: the script built it elsewhere."
+        )
     ordered = {one.parts for one in joined if any(_explains(one, finding) for finding in several)}
+    ordered |= pairs if doubted else set()  # what follows from such a number cannot be told from other faults
     ordered |= {frozenset(one.parts) for one in several if one.cause in _CUT or _is_clearance(one, assembly.resolved)}
     return Findings(
         _addressed(finding, between.get(finding.where, finding.parts), assembly.resolved, departed, ordered) for finding in several
     )
+
+
+def _sources(resolved: ResolvedPlan) -> dict[str, str]:
+    return {name: source_of(name, resolved) for name in resolved.parts}
+
+
+def _is_open(finding: Finding, resolved: ResolvedPlan, departed: Container[str]) -> bool:
+    """Return whether a finding is an error about two parts of which neither is known to depart."""
+    is_between = finding.severity == "error" and finding.code in _CODES and len(finding.parts) == 2
+    return is_between and not any(source_of(name, resolved) in departed for name in finding.parts if name in resolved.parts)
 
 
 def source_of(name: str, resolved: ResolvedPlan) -> str:
@@ -171,7 +191,7 @@ def _is_clearance(finding: Finding, resolved: ResolvedPlan) -> bool:
     if finding.code not in _FITS or finding.value is None or finding.value <= 0.0:
         return False
     given = [resolved.parts[source_of(name, resolved)].dimensions for name in finding.parts if name in resolved.parts]
-    stated = [value for dimensions in given for name, value in dimensions.items() if _CLEARANCE.search(name)]
+    stated = [value for dimensions in given for name, value in dimensions.items() if CLEARANCE.search(name)]
     return any(abs(finding.value - value) < _ROUNDING_MM for value in stated)
 
 
@@ -259,7 +279,7 @@ def _is_given(length: float, dimensions: Mapping[str, float]) -> bool:
 
 def _diameters(dimensions: Mapping[str, float]) -> Iterator[float]:
     lengths = {name: float(value) for name, value in dimensions.items() if not name.endswith(("_deg", "_count"))}
-    clearances = [0.0, *(value for name, value in lengths.items() if _CLEARANCE.search(name))]
+    clearances = [0.0, *(value for name, value in lengths.items() if CLEARANCE.search(name))]
     for value in lengths.values():
         for clearance in clearances:
             for sign in (1, -1):

@@ -250,6 +250,8 @@ class PartBuilder:
 
 
 def _unbuilt(name: str, finding: Finding) -> str:
+    if finding.route == "design":
+        return finding.message
     return f"Every script for {name} broke its contract; the last one ended with {finding.code}: {finding.message}"
 
 

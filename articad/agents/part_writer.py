@@ -13,12 +13,13 @@ from articad.agents.inspection import look
 from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
 from articad.agents.pictures import part_picture, partial_picture
 from articad.agents.prompts import prompt, prompt_file
-from articad.agents.replies import parse_script
+from articad.agents.replies import objection, parse_script
 from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory, listed_cases
 from articad.assembly import DEFLECTION_MM
 from articad.connectors.connector import Connector
 from articad.errors import ArticadError, BuildError, ContractError, KernelError, OutputError
 from articad.findings import Finding, Findings
+from articad.findings.codes import CODES
 from articad.kernels.kernel import PartKernel
 from articad.kernels.parts import RealisedPart
 from articad.plan.brief import brief, build_digest
@@ -63,6 +64,12 @@ class Attempt:
     def of(cls, said: str, error: KernelError | OutputError, picture: Image | None = None) -> Attempt:
         """Return the attempt that ended with an error."""
         return cls(said, failure_text(error), picture, error)
+
+    @property
+    def is_of_design(self) -> bool:
+        """Whether the specification is at fault, so that its author cannot mend it."""
+        errors = () if self.error is None else self.error.findings.errors
+        return bool(errors) and all(finding.route == "design" for finding in errors)
 
     @property
     def signature(self) -> object:
@@ -126,14 +133,15 @@ class PartWriter:
     def make(self, *, answered: int = 0, previous: Attempt | None = None) -> WrittenPart:
         """Return the part as built.
 
-        After the same failure twice in a row, another approach is requested; the third time ends the attempts.
+        After the same failure twice in a row, another approach is requested; the third time ends the attempts. So does a failure of the
+        specification: an author's objection, or a script that builds with a number in another unit (`articad.kernels.slips`).
 
         Args:
             answered: Answers that were given before; the address of the next one follows from it.
             previous: The last of these, and what is wrong with it.
 
         Raises:
-            BuildError, ContractError, OutputError: The failure of the last answer, when all repairs are used up.
+            BuildError, ContractError, OutputError: The failure of the last answer, when all repairs are used up or the specification is at fault.
         """
         first, alike, best = self._opening(), 0, None
         for number in range(answered + 1, answered + self._repairs + 2):
@@ -148,6 +156,9 @@ class PartWriter:
                 if not of_script:
                     return best
                 outcome = Attempt(reply.text, _told(of_script), self._picture(outcome), complaint="look_repair")
+            if outcome.is_of_design:
+                previous = outcome
+                break
             alike = alike + 1 if previous is not None and outcome.signature == previous.signature else 0
             previous = outcome
             if alike > 1:
@@ -184,6 +195,16 @@ class PartWriter:
 
     def _tried(self, said: str, step: str, number: int) -> RealisedPart | Attempt:
         """Return the part that an answer made, or why it made none."""
+        why = objection(said)
+        if why is not None:
+            refused = Finding(
+                code="E_ORDER_REFUSED",
+                where=f"parts.{self._name}",
+                message=f"{self._name} cannot be built: {why}",
+                hint=CODES["E_ORDER_REFUSED"].remedy,
+                parts=(self._name,),
+            )
+            return Attempt.of(said, ContractError(str(refused), findings=(refused,), parts=(self._name,)))
         try:
             script = parse_script(said, step=step)
         except OutputError as error:

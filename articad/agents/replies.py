@@ -19,6 +19,7 @@ TRIES: Final = 3  # a model that fails three times does not find the form
 _FENCED: Final = re.compile(r"^[ \t]*```[ \t]*([\w+-]*)[^\n]*\n(.*?)^[ \t]*```[ \t]*$", re.DOTALL | re.MULTILINE)
 _OPEN_FENCE: Final = re.compile(r"\A\s*```[ \t]*[\w+-]*[^\n]*\n")
 _SHOWN = 60  # characters of a reply that an error quotes
+_OBJECTION_CHARACTERS: Final = 1000
 _TOO_DEEP: Final = f"it is nested deeper than {MOST_LEVELS} levels"
 
 
@@ -68,6 +69,20 @@ def parse_script(text: str, *, step: str) -> bytes:
         raise unusable("it has no ```python block that defines build(part).", text, step=step)
     script: str = defining[-1]
     return (script.strip("\n") + "\n").encode()
+
+
+def objection(text: str) -> str | None:
+    """Return why an author cannot build a part as it is specified, if that is all that a reply says: `{"cannot_be_built": "why"}`."""
+    if re.search(r"^def build\(", text, re.MULTILINE):
+        return None
+    for candidate in _candidates(text):
+        try:
+            said = json.loads(candidate)
+        except (ValueError, RecursionError):
+            continue
+        if isinstance(said, dict) and isinstance(why := said.get("cannot_be_built"), str) and why.strip():
+            return " ".join(why.split())[:_OBJECTION_CHARACTERS]
+    return None
 
 
 def unusable(problem: str, raw: str, *, step: str) -> OutputError:

@@ -319,6 +319,12 @@ CODES: dict[str, Code] = {
     ),
     # --- build
     "E_SCRIPT_MISSING": Code("build", "code", "A part has no script.", "Write parts/<part>.py with a function build(part)."),
+    "E_ORDER_REFUSED": Code(
+        "build",
+        "design",
+        "The author of a part states that it cannot be built as specified.",
+        "Correct the number or the description that the author names; or state how both hold.",
+    ),
     "E_SCRIPT_ERROR": Code("build", "code", "A part script raised an exception.", "Correct the named line."),
     "E_SCRIPT_TIMEOUT": Code("build", "code", "A part script ran too long.", "Simplify the geometry; look for an endless loop."),
     "E_SCRIPT_MEMORY": Code("build", "code", "A part script needed too much memory.", "Simplify the geometry."),

@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from articad.aliases import Progress
-from articad.errors import ContractError, KernelError, ReadError, did_you_mean
+from articad.errors import BuildError, ContractError, KernelError, ReadError, did_you_mean
 from articad.files import SCRIPT_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.geometry.part import Part
 from articad.kernels.kernel import BuildCache, BuiltPart, PartKernel, build_part, mirror_part, realise
+from articad.kernels.slips import explained
 from articad.plan.brief import brief_digest, build_digest
 from articad.plan.resolve import ResolvedPlan
 
@@ -140,18 +141,30 @@ def build_source(
 
     Raises:
         BuildError: If its script fails.
-        ContractError: If the result breaks the contract, connector drift included.
+        ContractError: If the result breaks the contract, connector drift included. If one number in another unit, or with the other sign,
+            would heal either failure, its findings go to the designer.
     """
-    built = build_part(resolved, name, script, kernel=kernel, cache=cache, deflection=deflection)
-    part, drift = realise(resolved.parts[name], built)
-    findings = built.findings + drift
-    if not findings.ok:
-        raise ContractError("\n".join(map(str, findings.errors)), findings=findings, parts=(name,))
+    try:
+        built, part, findings = _kept(resolved, name, script, kernel, cache, deflection)
+    except (BuildError, ContractError) as error:
+        raise explained(error, resolved, name, script, kernel) from None
     digests = {
         "brief": brief_digest(resolved, name),
         "build": build_digest(resolved, name, script, kernel.name, kernel.version, deflection),
     }
     return RealisedPart(part=part, built=built, script=script, digests=digests, derived_from=None, cached=built.cached, findings=findings)
+
+
+def _kept(
+    resolved: ResolvedPlan, name: str, script: bytes, kernel: PartKernel, cache: BuildCache, deflection: float
+) -> tuple[BuiltPart, Part, Findings]:
+    """Return a part that keeps its contract, as built and as seated in the plan, with its warnings."""
+    built = build_part(resolved, name, script, kernel=kernel, cache=cache, deflection=deflection)
+    part, drift = realise(resolved.parts[name], built)
+    findings = built.findings + drift
+    if not findings.ok:
+        raise ContractError("\n".join(map(str, findings.errors)), findings=findings, parts=(name,))
+    return built, part, findings
 
 
 def derive_part(resolved: ResolvedPlan, name: str, realised: Mapping[str, RealisedPart], *, kernel: PartKernel) -> RealisedPart:

@@ -36,8 +36,10 @@ _CHIRAL = re.compile(
     r"\b(threads?|threaded|helix|helical|worm|spiral|bevel|lettering|inscription|logo|(?:left|right)-hand(?:ed)?)\b", re.IGNORECASE
 )
 _SIDE = re.compile(r"(?:\b|_)(left|right)(?:\b|_)", re.IGNORECASE)
-_CLEARANCE = re.compile(r"clearance|play|gap|slack|tolerance|allowance|offset")
-_SIZE = re.compile(r"(?:^|_)(?:radius|diameter|length|width|height|depth|thickness|thick|wide|bore|hole|wall|size|pitch)$")
+CLEARANCE = re.compile(r"clearance|play|gap|slack|tolerance|allowance")
+"""What a dimension that states a clearance has in its name."""
+SIZE = re.compile(r"(?:^|_)(?:radius|diameter|length|width|height|depth|thickness|thick|wide|bore|hole|wall|size|pitch)$")
+"""How the names of dimensions end that are sizes, not places."""
 _SAME = 1e-9  # rad or mm: limits computed to be the same are the same
 
 Ends = dict[tuple[str, str], list[str]]
@@ -291,10 +293,10 @@ def _dimensions(draft: Draft) -> list[Finding]:
         _negative(part, name, value)
         for part, dimensions in draft.dimensions.items()
         for name, value in dimensions.items()
-        if _SIZE.search(name) and value < -NOISE_MM
+        if SIZE.search(name) and value < -NOISE_MM
     ]
     for length, part, name in lengths:
-        least = LEAST_CLEARANCE_MM if _CLEARANCE.search(name) else THINNEST_MM
+        least = LEAST_CLEARANCE_MM if CLEARANCE.search(name) else THINNEST_MM
         if NOISE_MM < length < least:
             message = f"Dimension {name!r} of {part} is {length:.6g} mm."
             hint = f"Lengths are millimetres: were metres given? Then it is {length * 1000.0:.6g}; or make it at least {least:g} mm."
