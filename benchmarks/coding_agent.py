@@ -3,8 +3,8 @@
     python benchmarks/coding_agent.py [EXAMPLE] [--json FILE]
 
 A client of the official SDK speaks with `articad mcp` over stdio and designs, builds, looks at, certifies and exports an example;
-by default the wardrobe, whose 18 parts take eight scripts. Pictures are counted apart: a model is charged for their size in pixels. Exit code 1 if
-the text of the whole path exceeds the goal.
+by default the wardrobe, whose 18 parts take eight scripts, as `benchmarks/products` states it in the short form. Pictures are counted apart: a model is
+charged for their size in pixels. Exit code 1 if the text of the whole path exceeds a goal.
 """
 
 from __future__ import annotations
@@ -22,8 +22,11 @@ from mcp import Client, StdioServerParameters
 from mcp.client.stdio import stdio_client
 
 from articad import examples
+from articad.plan.short import expanded
 
-GOAL = 32_000  # bytes, about 8 000 tokens, besides the tools' own descriptions
+GOAL_SENT = 12_121  # bytes that a model writes: half of what the wardrobe took in the long form
+GOAL_RECEIVED = 4_000  # bytes that it reads, besides the tools' own descriptions
+PRODUCTS = Path(__file__).parent / "products"
 
 
 @dataclass
@@ -59,13 +62,13 @@ class Counting:
 
 async def design(agent: Counting, name: str) -> None:
     """Go the whole path, with a mistake in the plan on the way."""
-    folder = examples.folder(name)
+    folder = PRODUCTS / name if (PRODUCTS / name).is_dir() else examples.folder(name)
     plan = json.loads((folder / "plan.json").read_text())
     await agent.call("check_plan", design="mine", plan={**plan, "freedoms": plan["freedoms"] + 1})
     await agent.call("explain", code="E_DOF_MISMATCH")
     await agent.call("edit_plan", design="mine", changes={"freedoms": plan["freedoms"]})
     await agent.call("docs", dialect="build123d", intent="round the vertical edges")
-    for part in plan["parts"]:
+    for part in expanded(plan)["parts"]:
         if "derive" not in part:
             script = (folder / "parts" / f"{part['name']}.py").read_text()
             await agent.call("build_part", design="mine", part=part["name"], script=script)
@@ -75,7 +78,7 @@ async def design(agent: Counting, name: str) -> None:
     await agent.call("sim", design="mine")
     await agent.call("audit", design="mine")
     await agent.call("export", design="mine", formats=["mjcf", "step", "glb"])
-    parameter = next((each for each in plan.get("parameters", []) if isinstance(each["value"], int | float)), None)
+    parameter = next((each for each in expanded(plan).get("parameters", []) if isinstance(each["value"], int | float)), None)
     if parameter:
         await agent.call("edit_parameters", design="mine", values={parameter["name"]: parameter["value"] * 1.001})
 
@@ -107,8 +110,8 @@ def main() -> int:
     print(f"the tools' own descriptions: {described} bytes, once")
     if arguments.json:
         arguments.json.write_text(json.dumps({tool: vars(row) for tool, row in rows.items()}, indent=1))
-    met = sent + received <= GOAL
-    print(f"{sent + received} bytes of at most {GOAL}: {'met' if met else 'missed'}")
+    met = sent <= GOAL_SENT and received <= GOAL_RECEIVED
+    print(f"in {sent} of at most {GOAL_SENT}, out {received} of at most {GOAL_RECEIVED}: {'met' if met else 'missed'}")
     return 0 if met else 1
 
 

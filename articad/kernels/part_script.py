@@ -16,6 +16,7 @@ from build123d import Shape
 from OCP.BRepCheck import BRepCheck_Analyzer
 
 from articad.kernels import measure
+from articad.kernels.made import made
 from articad.kernels.tessellation import Same
 
 FILE = "part.py"  # the file name of a script's code: tracebacks are cut down to it
@@ -24,6 +25,16 @@ _TEXT = 2000  # characters of a message that are kept
 
 Write = Callable[[dict[str, Any]], None]
 Json = dict[str, Any]
+
+
+class Dimensions(dict[str, Any]):
+    """Dimensions by name: `d["width"]`, or `d.width`."""
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"the part has no dimension {name!r}") from None
 
 
 class NotAPart(Exception):  # noqa: N818 - not an error in the script's code, but a message to its author
@@ -113,7 +124,9 @@ def as_object(part: Json) -> SimpleNamespace:
         )
         for name, frame in part["connectors"].items()
     }
-    return SimpleNamespace(**fields, connectors=connectors)
+    given = SimpleNamespace(**fields | {"dimensions": Dimensions(fields["dimensions"])}, connectors=connectors)
+    given.made = lambda shape: made(shape, given)
+    return given
 
 
 def _kernel_shape(value: Any, problems: list[str]) -> Any:

@@ -21,6 +21,8 @@ from articad.findings.codes import CODES
 from articad.mcp import answers
 from articad.mcp.skill import page, section
 from articad.mcp.workbench import BRIEF_BYTES, Tell, Workbench, condensed, gathered
+from articad.plan.amending import amended
+from articad.plan.short import expanded
 from articad.processes import scratch
 from articad.runs.run import write_atomically
 
@@ -57,7 +59,7 @@ class Tools:
         topic: Annotated[
             str,
             Field(
-                description='a type: "plan", "part", "connector", "joint", "revolute", "coupling", "derive", "fit", ...; or a page: "script", "copies", "rest"'
+                description='a type: "plan", "part", "connector", "joint", "revolute", "coupling", "derive", "fit", ...; or a page: "short", "script", "copies", "rest"'
             ),
         ],
     ) -> str:
@@ -250,11 +252,11 @@ class Tools:
         folder = self.bench.design(design)
         kept = self.bench.read(f"{design}/plan.json")
         plan = json.loads(kept)
-        known = {entry["name"]: entry for entry in plan.get("parameters", ())}
-        for name, value in values.items():
+        known = [entry["name"] for entry in expanded(plan).get("parameters", ())]
+        for name in values:
             if name not in known:
                 raise ToolError(f"There is no parameter {name!r}.{did_you_mean(name, known)} There are {', '.join(known) or 'none'}.")
-            known[name]["value"] = value
+        plan = amended(plan, {f"parameters.{name}": value for name, value in values.items()})
         before = self._shapes(design)
         self.bench.write_plan(design, plan)
         report = await self._built(context, folder, kernel)

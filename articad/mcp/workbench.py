@@ -18,6 +18,7 @@ from articad.aliases import Json
 from articad.errors import ReadError
 from articad.files import RECORD_BYTES, ROOT_VARIABLE, is_file, read_file
 from articad.plan.amending import amended
+from articad.plan.short import expanded, is_short
 from articad.processes import launcher
 from articad.runs.run import write_atomically
 
@@ -112,7 +113,12 @@ class Workbench:
             plan = dict(json.loads(self.read(f"{name}/plan.json")))
         except ValueError as error:
             raise ReadError.at(name, f"The plan of {name!r} cannot be read: {error}.", "Give the whole plan.") from error
-        return self.write_plan(name, amended(plan, changes))
+        try:
+            return self.write_plan(name, amended(plan, changes))
+        except ReadError:
+            if not is_short(plan):
+                raise
+        return self.write_plan(name, amended(expanded(plan), changes))  # at an address that only the long form has
 
     def write_script(self, design: str, part: str, script: str, kernel: str) -> Path:
         """Save a part's script.
@@ -142,7 +148,7 @@ class Workbench:
     def parts(self, design: str) -> list[str]:
         """Return the names of a design's parts that need a script, as far as the plan can be read."""
         try:
-            plan = json.loads(self.read(f"{design}/plan.json"))
+            plan = expanded(json.loads(self.read(f"{design}/plan.json")))
             return [str(part["name"]) for part in plan["parts"] if "derive" not in part]
         except (ValueError, TypeError, KeyError):
             return []

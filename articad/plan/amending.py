@@ -49,6 +49,9 @@ def _put(holder: Any, step: str, value: Any, address: str) -> None:
         if value is None:
             holder.pop(step, None)
         else:
+            held = holder.get(step)
+            if isinstance(held, dict) and "value" in held and not isinstance(value, dict):  # a parameter of the short form
+                value = held | {"value": value}
             holder[step] = value
     elif isinstance(holder, list) and isinstance(value, dict) and step not in _names(holder) and not step.isdigit():
         holder.append({"name": step} | value)

@@ -21,6 +21,7 @@ from articad.findings import Finding, Findings
 from articad.plan import reading
 from articad.plan.check import check_plan
 from articad.plan.schema import PLAN_FILE, AssemblyPlan
+from articad.plan.short import expanded
 
 __all__ = ["further_findings"]
 
@@ -56,7 +57,7 @@ def further_findings(path: Path, found: Findings) -> Findings:
         return found
     if not isinstance(document, dict):
         return found
-    mended = _Mended(document)
+    mended = _Mended(expanded(document))
     plan = mended.plan()
     if plan is None:
         return found

@@ -16,6 +16,7 @@ from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.plan.fields import NAME_RULE, PlanObject, is_name
 from articad.plan.joint_forms import JOINT_TYPES, JointForm
+from articad.plan.short import expanded
 
 F = TypeVar("F", bound=PlanObject)
 Location = tuple[str | int, ...]
@@ -108,6 +109,7 @@ def from_json(form: type[F], document: Any) -> F:
     """
     if not isinstance(document, Mapping):
         raise _refused([_finding("E_SCHEMA", "plan", f"A plan is an object {{…}}, not {_shown(document)}.", "Give one JSON object.")])
+    document = expanded(document)
     try:
         return form.model_validate(document)
     except ValidationError as error:

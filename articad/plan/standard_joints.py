@@ -1,0 +1,58 @@
+"""Standard joints: a joint of the plan with the features that make it, as dimensions of its two parts.
+
+A script adds them with `part.made(shape)`; the checks measure them as they measure everything that a script draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from articad.aliases import Json
+
+STANDARD: Final[Mapping[str, str]] = {"hinge": "revolute", "dowel": "fixed", "drawer_slide": "slider", "ball_socket": "ball"}
+"""The plan's joint type by standard joint."""
+
+CLEARANCE_MM: Final = 0.15
+"""Half the difference of diameters where a plan states none: turns and slides freely, also when printed or sawn."""
+
+
+def made_of(joint: Json) -> dict[str, dict[str, Any]]:
+    """Turn a standard joint into a joint of the plan, in place; return the dimensions of its features by side, "parent" and "child".
+
+    The joint may have `pin_mm` (hinge, dowel: diameter), `bar_mm` [x, y] (drawer_slide) or `ball_mm` (ball_socket: diameter), `length_mm`
+    of the pin or bar from the joint's origin along its +z, `depth_mm` of the hole (without it, the hole goes through), `clearance_mm`, and
+    `pin_on`: the side that has the pin, bar or ball ("parent").
+    """
+    kind = joint["type"]
+    joint["type"] = STANDARD[kind]
+    size = joint.pop({"drawer_slide": "bar_mm", "ball_socket": "ball_mm"}.get(kind, "pin_mm"), None)
+    length, depth = joint.pop("length_mm", None), joint.pop("depth_mm", None)
+    clearance = joint.pop("clearance_mm", 0 if kind == "dowel" else CLEARANCE_MM)
+    inner = joint.pop("pin_on", "parent")
+    outer = "child" if inner == "parent" else "parent"
+    pin: dict[str, Any]
+    hole: dict[str, Any]
+    if kind == "drawer_slide" and isinstance(size, list) and len(size) == 2:
+        pin = {"bar_x": size[0], "bar_y": size[1]}
+        hole = {"slot_x": _wider(size[0], clearance), "slot_y": _wider(size[1], clearance)}
+    elif kind == "ball_socket":
+        pin, hole, length = {"ball": size}, {"socket": _wider(size, clearance)}, None
+    else:
+        pin, hole = {"pin": size}, {"bore": _wider(size, clearance)}
+    if length is not None:
+        pin["length"] = length
+    if depth is not None:
+        hole["depth"] = depth
+    if kind in ("hinge", "drawer_slide") and clearance:
+        joint.setdefault("fit", {"gap_mm": [f"({clearance})/2", f"({clearance})*3/2"], "contact": "allowed"})
+    return {inner: pin, outer: hole}
+
+
+def _wider(size: Any, clearance: Any) -> Any:
+    if isinstance(size, int | float) and isinstance(clearance, int | float):
+        return round(size + 2 * clearance, 9)
+    return f"({size})+2*({clearance})" if clearance else size
+
+
+__all__ = ["CLEARANCE_MM", "STANDARD", "made_of"]
