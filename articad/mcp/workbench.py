@@ -178,7 +178,7 @@ class Workbench:
             ReadError: If it takes too long or leaves no report.
         """
         child = launcher.start(
-            [command, *arguments, "--json", "--", *on],
+            [command, *arguments, "--json", *(["--", *on] if on else [])],
             module="articad.cli",
             limits=launcher.Limits(seconds=seconds, file_size=_FILE_BYTES),
             environment=launcher.environment(*launcher.OWN) | {ROOT_VARIABLE: str(self.root)},

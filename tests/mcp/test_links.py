@@ -76,7 +76,7 @@ def test_a_linked_script_is_not_read(root: Path) -> None:
 
     async def build() -> Any:
         tools = Tools(root)
-        return await tools.bench.run("part", str(root / "box"), part, seconds=60.0)
+        return await tools.bench.run("part", on=[str(root / "box"), part], seconds=60.0)
 
     assert "the-first-word" not in json.dumps(finish(build()))
 
