@@ -2,16 +2,20 @@
 
 python -m venv DIR; DIR/bin/pip install -r tests/export/judges.lock
 python -m venv OTHER; OTHER/bin/pip install -r tests/export/simready.lock
-ARTICAD_ENGINES=DIR/bin/python ARTICAD_SIMREADY=OTHER/bin/python .venv/bin/python -m tests.export.judges [NAME …] [--without JUDGE] [--again]
+ARTICAD_ENGINES=DIR/bin/python ARTICAD_SIMREADY=OTHER/bin/python .venv/bin/python -m tests.export.judges [NAME …] [--without JUDGE] [--only JUDGE] [--again]
 
 runs MuJoCo, PyBullet, Newton, Pinocchio, simcheck, check_urdf and the validators of USD and SimReady on the exports of each model, keeps what they say in
-docs/reference/simulators.json, and writes docs/reference/simulators.md and the table of README. A judge that has judged the same files is not asked again, unless
-`--again` is given.
+docs/reference/simulators.json, and writes docs/reference/simulators.md and the table of README. Each answer is kept with a digest of the files and one of the judge (its
+program here, and its version). A judge that has judged the same files is not asked again, unless it has changed or `--again` is given. With `--check`, no judge is
+asked: the command lists the answers that are not about the present files by the present judges, and fails if there are any.
 """
 
 from __future__ import annotations
 
+import ast
+import fcntl
 import hashlib
+import inspect
 import json
 import os
 import re
@@ -19,7 +23,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -112,10 +118,10 @@ def exported(assembly: Assembly, folder: Path) -> dict[str, Path]:
     return found
 
 
-def judged(assembly: Assembly, files: Mapping[str, Path], without: Container[str] = ()) -> dict[str, Said]:
-    """Ask every judge about the exports of an assembly, but those whose names are given, with or without the format."""
+def judges_of(assembly: Assembly, files: Mapping[str, Path]) -> dict[str, Callable[[], Said]]:
+    """Return the judges of the exports of an assembly, by engine or checker and format."""
     opened = bool(assembly.mechanism.loop_joints)
-    judges: dict[str, Callable[[], Said]] = {
+    return {
         "MuJoCo mjcf": lambda: _verdict(held_to_kinematics(assembly, try_out("mujoco", files["mjcf"], drivers=driving(assembly)))),
         "MuJoCo urdf": lambda: _verdict(*simulate_file(files["urdf"], engines=("mujoco",)).outcomes),
         "PyBullet mjcf": lambda: _verdict(*simulate_file(files["mjcf"], engines=("pybullet",)).outcomes),
@@ -130,7 +136,6 @@ def judged(assembly: Assembly, files: Mapping[str, Path], without: Container[str
         "USD validator usd": lambda: usd_validator(files["usd"]),
         "SimReady usd": lambda: simready(files["usd"]),
     }
-    return {name: judge() for name, judge in judges.items() if name not in without and name.split()[0] not in without}
 
 
 def _verdict(outcome: EngineOutcome) -> Said:
@@ -255,6 +260,34 @@ def _codes(requirements: object) -> list[str]:
     return re.findall(r"com\.nvidia\.[a-z_]+\.([A-Z][\w.]*)", str(requirements))
 
 
+_SOURCES: Final = {
+    "MuJoCo": ("articad/simulation", "mujoco_trial strokes verdict expected examine", "mujoco"),
+    "PyBullet": ("articad/simulation", "bullet_trial strokes verdict examine", "pybullet"),
+    "Newton": ("articad/simulation", "strokes verdict expected ../../tests/export/newton_trial", ""),
+    "Pinocchio": ("articad/simulation", "loading", "pin"),
+}
+"""Folder, modules and package of the engines that run in programs of this project."""
+
+
+@cache
+def digest_of_judge(name: str) -> str:
+    """Return a digest of a judge, "Newton usd": of its program without comments, and of its version."""
+    engine = name.split()[0]
+    found = hashlib.sha256()
+    folder, modules, package = _SOURCES.get(engine, ("", "", ""))
+    for module in modules.split():
+        found.update(ast.dump(ast.parse((ROOT / folder / f"{module}.py").read_text())).encode())
+    asked = {"Newton": (newton,), "check_urdf": (check_urdf,), "simcheck": (simcheck,), "USD": (usd_validator,), "SimReady": (simready,)}
+    for function in asked.get(engine, ()):
+        found.update(ast.dump(ast.parse(inspect.getsource(function))).encode())
+    if package:
+        found.update(version(package).encode())
+    elif engine != "check_urdf":  # of the system
+        lock = "simready.lock" if engine == "SimReady" else "judges.lock"
+        found.update(Path(__file__).with_name(lock).read_bytes())
+    return found.hexdigest()[:16]
+
+
 def _digest(path: Path) -> str:
     """Return a digest of a main file and everything beside it."""
     found = hashlib.sha256()
@@ -367,27 +400,47 @@ def _cell(said: Mapping[str, Any] | None) -> str:
 
 
 def main(words: list[str]) -> int:
-    """Judge models, keep the record and write the page; `--without NAME` leaves a judge out, `--again` repeats what was judged."""
-    without = {words[at + 1] for at, word in enumerate(words) if word == "--without"}
-    again = "--again" in words
-    names = [word for at, word in enumerate(words) if not word.startswith("--") and (at == 0 or words[at - 1] != "--without")]
+    """Judge models, keep the record and write the page, or check the record."""
+    options: dict[str, set[str]] = {
+        option: {words[at + 1] for at, word in enumerate(words) if word == option} for option in ("--without", "--only")
+    }
+    names = [word for at, word in enumerate(words) if not word.startswith("--") and (at == 0 or words[at - 1] not in options)]
+    old = 0
     for name in names or [*example_names(), *hard_names()]:
-        record: dict[str, Any] = json.loads(RECORD.read_text()) if RECORD.exists() else {}
-        before = record.get(name, {})
         with tempfile.TemporaryDirectory() as folder:
             assembly = read(folder_of(name))
             files = exported(assembly, Path(folder) / name)  # SimReady's NP.005: NAME/…/NAME.usda
             digests = {kind: _digest(path) for kind, path in files.items()}
-            known = {judge for judge, said in before.items() if said.get("files") == digests[judge.split()[-1]]}
-            said = judged(assembly, files, without | (set() if again else known))
-        rows = {judge: one._asdict() | {"files": digests[judge.split()[-1]]} for judge, one in said.items()}
-        record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
-        record[name] = record.get(name, {}) | rows
-        print(name, {judge: one.words for judge, one in said.items()}, flush=True)  # noqa: T201 - a command
+            known = json.loads(RECORD.read_text()).get(name, {})
+            for judge, ask in judges_of(assembly, files).items():
+                now = {"files": digests[judge.split()[-1]], "judge": digest_of_judge(judge)}
+                fresh = now.items() <= known.get(judge, {}).items()
+                if "--check" in words:
+                    old += not fresh
+                    if not fresh:
+                        print(f"{name}: {judge} {'is of an older export or judge' if judge in known else 'was not asked'}")  # noqa: T201
+                    continue
+                named = {judge, judge.split()[0]}
+                if named & options["--without"] or (options["--only"] and not named & options["--only"]) or (fresh and "--again" not in words):
+                    continue
+                said = ask()
+                print(f"{name}: {judge}: {said.words}", flush=True)  # noqa: T201 - a command
+                if said.words != "not installed":
+                    _keep(name, judge, said._asdict() | now)
+    if "--check" in words:
+        print(f"{old} answers are missing or old.")  # noqa: T201
+    return 1 if old else 0
+
+
+def _keep(name: str, judge: str, row: Mapping[str, Any]) -> None:
+    """Write an answer into the record, and what is made of the record; several runs may do so at a time."""
+    with RECORD.open() as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        record: dict[str, Any] = json.loads(RECORD.read_text())
+        record[name] = record.get(name, {}) | {judge: dict(row)}
         RECORD.write_text(json.dumps(record, indent=1, sort_keys=True) + "\n")
         PAGE.write_text(page(record))
         README.write_text(readme(README.read_text(), record))
-    return 0
 
 
 if __name__ == "__main__":

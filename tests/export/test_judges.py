@@ -16,7 +16,7 @@ from tests.export import judges
 @pytest.mark.parametrize("name", ["wardrobe", "sewing_things_box"])
 def test_no_judge_objects_to_an_example(name: str, tmp_path: Path) -> None:
     assembly = read(judges.folder_of(name))
-    said = judges.judged(assembly, judges.exported(assembly, tmp_path))
+    said = {judge: ask() for judge, ask in judges.judges_of(assembly, judges.exported(assembly, tmp_path)).items()}
 
     assert {judge: one.words for judge, one in said.items() if one.passed is False} == {}
 
