@@ -17,6 +17,7 @@ from articad.auditing.declared import Declared
 from articad.auditing.wording import counted
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
+from articad.geometry.capping import without_gaps
 from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.part import Part
 from articad.interference.body import body_of
@@ -84,11 +85,14 @@ def contacts(
 
 
 def colliding(part: Part) -> TriMesh | None:
-    """Return the shape that represents a part: its solid, else its collision shapes, else its visual ones; overlapping ones are united."""
+    """Return the shape that represents a part: its solid, else its collision shapes, else its visual ones, with small gaps closed.
+
+    Overlapping shapes are united.
+    """
     if part.solid is not None:
         return part.solid.mesh
     shapes = part.collisions or part.visuals
-    return united([shape.placed for shape in shapes]) if shapes else None
+    return united([without_gaps(shape.placed) for shape in shapes]) if shapes else None
 
 
 def united(meshes: list[TriMesh]) -> TriMesh:

@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from articad.assembly import Assembly
 from articad.auditing.wording import listed
 from articad.export.contacts import ContactSearch, poses_in_motion
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, rigid_groups, same_group_pairs
 from articad.findings import Finding
-from articad.geometry.part import Shape
+from articad.geometry.capping import without_gaps
 
 MOST_PARTS = 200  # with collision shapes
 MOST_TRIANGLES = 200_000  # of all collision shapes
@@ -23,15 +24,23 @@ _NAMED = 4  # pairs in one message
 def hull_jams(assembly: Assembly, filtered: frozenset[frozenset[str]] = frozenset()) -> tuple[list[Finding], list[str]]:
     """Return a finding for pairs whose hulls meet where their collision shapes do not, and what was not checked, in words.
 
-    Engines skip pairs that a joint connects, unless one of them is fixed to the world. Parts with open shapes are left out.
+    Engines skip pairs that a joint connects, unless one of them is fixed to the world. Small gaps of a mesh are closed for the comparison.
+    Where a mesh is open for another reason, its hull, which is what engines use, is compared with the others' where its surface meets none
+    of theirs.
 
     Args:
         assembly: Read from a URDF or MJCF file that articad did not write.
         filtered: Pairs that the file excludes from collision.
     """
-    solids = {name: shapes for name, part in assembly.parts.items() if (shapes := _closed(part.collisions))}
-    open_ = [name for name, part in assembly.parts.items() if part.collisions and name not in solids]
-    undone = [f"hulls: the collision meshes of {listed(open_)} are open, so whether their hulls jam is not known"] if open_ else []
+    solids = {
+        name: tuple(replace(shape, mesh=without_gaps(shape.mesh)) for shape in part.collisions)
+        for name, part in assembly.parts.items()
+        if part.collisions
+    }
+    open_ = [name for name, shapes in solids.items() if not all(shape.mesh.is_closed for shape in shapes)]
+    undone = []
+    if open_:
+        undone = [f"hulls: the collision meshes of {listed(open_)} are open: a jam is not found where their surfaces touch others"]
     if len(solids) < 2:
         return [], undone
     triangles = sum(len(shape.mesh.triangles) for shapes in solids.values() for shape in shapes)
@@ -41,7 +50,7 @@ def hull_jams(assembly: Assembly, filtered: frozenset[frozenset[str]] = frozense
             f"hulls: {len(solids)} parts have collision shapes of {triangles} triangles; at most {MOST_PARTS} and {MOST_TRIANGLES} are compared",
         ]
     mechanism = assembly.mechanism
-    search = ContactSearch(mechanism.parts, mechanism.at_rest[None].matrix, solids)
+    search = ContactSearch(mechanism.parts, mechanism.at_rest[None].matrix, solids, surfaces=True)
     for name, shapes in solids.items():
         search.update(name, shapes)
     if search.is_convex:
@@ -49,11 +58,6 @@ def hull_jams(assembly: Assembly, filtered: frozenset[frozenset[str]] = frozense
     search.poses = poses_in_motion(mechanism)[:MOST_POSES]
     found = [contact for contact in search.contacts(_never_collide(assembly, filtered)) if not contact.solids]
     return list(_findings(found)), undone
-
-
-def _closed(shapes: tuple[Shape, ...]) -> tuple[Shape, ...]:
-    """Return collision shapes if all are closed."""
-    return shapes if all(shape.mesh.is_closed and shape.mesh.volume > 0 for shape in shapes) else ()
 
 
 def _never_collide(assembly: Assembly, filtered: frozenset[frozenset[str]]) -> set[Pair]:

@@ -31,6 +31,7 @@ from articad.export.mjcf import STL_TRIANGLES
 from articad.export.names import Names
 from articad.export.urdf import write_urdf
 from articad.files import differs, read_file
+from articad.geometry.capping import GAP_SHARE, without_gaps
 from articad.geometry.inscribed import Piece
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
@@ -237,11 +238,13 @@ class _Mender:
     def divide(self, kept: Path | None = None) -> None:
         """Replace collision meshes that are not convex by convex pieces inside them; `pieces` gets the files of their meshes.
 
+        Small gaps of a mesh are closed first.
+
         Args:
             kept: A folder of which no file may be replaced by another.
         """
         cache, names = BuildCache(), Names()
-        divided, left = [], []
+        divided, gaps, left = [], [], []
         for link in UrdfText(self.references).declared(self.root, self.mended.file).links:
             elements = [one for place in self.root.iterfind("link") if place.get("name") == link.name for one in place.findall("collision")]
             elements = [
@@ -250,10 +253,12 @@ class _Mender:
             for element, shape in zip(elements, link.of("collision"), strict=True):
                 if shape.kind != "mesh" or shape.mesh is None or _is_convex(shape.mesh):
                     continue
-                found = pieces_of(shape.mesh, cache)
+                found = pieces_of(without_gaps(shape.mesh), cache)
                 if not found.inside:
                     left.append(link.name)
                     continue
+                if not shape.mesh.is_closed:
+                    gaps.append(link.name)
                 for index, piece in enumerate(found.pieces):
                     element.addprevious(self._piece(element, piece, _free_name(names, f"{link.name}_{index}", kept)))
                 element.getparent().remove(element)
@@ -262,6 +267,9 @@ class _Mender:
             self.mended.done.append(
                 f"divided {counted(len(divided), 'collision mesh', 'collision meshes')} into convex pieces: {listed(divided)}"
             )
+        if gaps:
+            meshes = counted(len(gaps), "collision mesh", "collision meshes")
+            self.mended.done.append(f"closed gaps of at most {100 * GAP_SHARE:g} % of the surface in {meshes} first: {listed(gaps)}")
         if left:
             self.mended.done.append(f"left {counted(len(left), 'collision mesh', 'collision meshes')} that enclose nothing: {listed(left)}")
 

@@ -14,6 +14,7 @@ from articad.auditing.mesh_references import READABLE
 from articad.auditing.wording import counted, listed
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
+from articad.geometry.capping import without_gaps
 from articad.geometry.mesh import TriMesh
 from articad.interference.body import Body, body_of
 from articad.interference.overlap import distance, surfaces_touch
@@ -104,10 +105,12 @@ def _broken(shape: DeclaredShape, what: str) -> Finding | None:
     assert shape.mesh is not None
     mesh = _closed(shape.mesh)
     if not mesh.is_closed:
+        gaps = "; where overlap and hulls are compared, these gaps are closed" if without_gaps(mesh).is_closed else ""
         return Finding(
             code="W_AUDIT_MESH_OPEN",
             where=shape.where,
-            message=f"{what} is open: {mesh.open_edges} edges of {len(mesh.triangles)} triangles belong to only one triangle, so it has no volume.",
+            message=f"{what} is open: {mesh.open_edges} edges of {len(mesh.triangles)} triangles belong to only one triangle, "
+            f"so it has no volume{gaps}.",
             hint="Close the mesh: every edge must belong to two triangles.",
             value=mesh.open_edges,
             limit=0,

@@ -6,6 +6,7 @@ import contextlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
 import manifold3d
@@ -18,7 +19,9 @@ from articad.export.convex import manifold
 from articad.export.hulls import HULL_DEPTH_MM, HULL_VOLUME_MM3, HullOverlap, Pair
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
+from articad.interference.body import body_of
 from articad.interference.boxes import meeting_boxes
+from articad.interference.overlap import se3_of, surfaces_touch
 from articad.interference.scene import Scene
 from articad.interference.sweep import MotionSampler
 
@@ -62,11 +65,13 @@ class ContactSearch:
         order: Names of the parts, in the order of the poses.
         poses: `(n, N, 4, 4)` [mm]; the first is the rest pose.
         solids: Collision shapes of each part.
+        surfaces: Whether open shapes, which are no solids, count as apart only where their surfaces do not meet; otherwise, they always do.
     """
 
     order: tuple[str, ...]
     poses: FloatArray
     solids: Mapping[str, tuple[Shape, ...]]
+    surfaces: bool = False
     _bodies: dict[tuple[str, bool], manifold3d.Manifold] = field(default_factory=dict)
     _pieces: dict[str, tuple[Shape, ...]] = field(default_factory=dict)
     _found: dict[Pair, HullOverlap | None] = field(default_factory=dict)
@@ -135,7 +140,13 @@ class ContactSearch:
         return None
 
     def _solids_meet(self, a: str, b: str, T: FloatArray) -> bool:
-        return _overlap(self._bodies_of(a, convex=False), self._bodies_of(b, convex=False), T)[1] > HULL_DEPTH_MM
+        if _overlap(self._bodies_of(a, convex=False), self._bodies_of(b, convex=False), T)[1] > HULL_DEPTH_MM:
+            return True
+        return self.surfaces and any(
+            surfaces_touch(body_of(one.mesh), body_of(other.mesh), one.frame.inverse() @ se3_of(T[:3]) @ other.frame)
+            for one, other in product(self.solids[a], self.solids[b])
+            if not (one.mesh.is_closed and other.mesh.is_closed)
+        )
 
     def _is_convex(self, part: str) -> bool:
         """True if one piece equals the part's only solid."""

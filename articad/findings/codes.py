@@ -811,5 +811,11 @@ CODES: dict[str, Code] = {
         "A file leaves closed loops of its assembly open; their joints are not driven where bodies collide.",
         "Simulate the MJCF, which closes them.",
     ),
+    "I_SIM_UNREAD": Code(
+        "audit",
+        None,
+        "A simulator does not read the inertia of a link from the file, so it was not tried there.",
+        "Simulate a URDF of the model in that engine.",
+    ),
     "E_SIM_ENERGY": Code("audit", None, "Energy grows although nothing drives the model.", "Use a smaller time step; check inertias."),
 }

@@ -143,6 +143,9 @@ def run(
 ) -> EngineOutcome:
     """Load, hold and drive a model; parts of one body do not collide, as with PyBullet's defaults.
 
+    An MJCF is not tried if PyBullet does not read the inertia of a link: it ignores `fullinertia`, and takes none from meshes whose type is
+    that of their class. What it would simulate is another model.
+
     Args:
         path: A URDF or MJCF file.
         rest: Initial values of joints by name [rad or m], zero by default.
@@ -159,8 +162,18 @@ def run(
             bodies = [bullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)]
         else:
             bodies = list(bullet.loadMJCF(str(path), physicsClientId=client))
-        return _Trial(
-            bullet, client, EngineOutcome("pybullet", str(bullet.getAPIVersion(client))), bodies, rest or {}, mimics or {}, opened
-        ).run()
+        outcome = EngineOutcome("pybullet", str(bullet.getAPIVersion(client)))
+        if path.suffix.lower() != ".urdf":
+            outcome.unread = tuple(_without_inertia(bullet, client, bodies))
+        return outcome if outcome.unread else _Trial(bullet, client, outcome, bodies, rest or {}, mimics or {}, opened).run()
     finally:
         bullet.disconnect(client)
+
+
+def _without_inertia(bullet: Any, client: int, bodies: list[int]) -> Iterator[str]:
+    """Yield the names of links that have a mass and no inertia."""
+    for body in bodies:
+        for link in range(bullet.getNumJoints(body, physicsClientId=client)):
+            mass, _, inertia = bullet.getDynamicsInfo(body, link, physicsClientId=client)[:3]
+            if mass > 0 and not any(inertia):
+                yield bullet.getJointInfo(body, link, physicsClientId=client)[12].decode(errors="replace")

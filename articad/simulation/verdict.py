@@ -13,6 +13,7 @@ SHARE = 0.99  # of its range that every joint must reach
 CALM = 0.02  # rad/s or m/s: slower is at rest
 DRIFT = 0.05  # rad or m by which a held joint may be pushed away
 RESIDUAL = 1e-3  # m or rad by which a closed loop may be open
+_NAMED = 4  # links in one message
 GROWTH = 0.05  # of the largest kinetic energy: more than integration errors
 
 Role = Literal["free", "driver", "follower", "tied"]
@@ -82,6 +83,7 @@ class EngineOutcome:
         frames: Frames for a filmstrip.
         open_loops: Closed loops, or equality constraints, that the file or the engine leaves out.
         passed_over: Joints that were not driven, because the loop that leads them is open.
+        unread: Links whose inertia the engine did not read from the file, so that nothing was tried.
     """
 
     engine: str
@@ -99,6 +101,7 @@ class EngineOutcome:
     frames: list[FilmFrame] = field(default_factory=list)
     open_loops: int = 0
     passed_over: tuple[str, ...] = ()
+    unread: tuple[str, ...] = ()
 
     @property
     def judged(self) -> list[JointReach]:
@@ -127,8 +130,8 @@ class EngineOutcome:
         """Return the measurements of another process."""
         reaches = [JointReach(**reach | {"allowed": reach.get("allowed") and tuple(reach["allowed"])}) for reach in row.pop("reaches", [])]
         frames = [FilmFrame(**frame) for frame in row.pop("frames", [])]
-        passed_over = tuple(row.pop("passed_over", ()))
-        return cls(**row, reaches=reaches, frames=frames, passed_over=passed_over)
+        names = {name: tuple(row.pop(name, ())) for name in ("passed_over", "unread")}
+        return cls(**row, **names, reaches=reaches, frames=frames)
 
 
 @dataclass(frozen=True)
@@ -146,7 +149,7 @@ class SimulationVerdict:
     @property
     def ok(self) -> bool:
         """True if an engine tried it and nothing is wrong."""
-        return self.findings.ok and any(outcome.loads for outcome in self.outcomes)
+        return self.findings.ok and any(outcome.loads and not outcome.unread for outcome in self.outcomes)
 
     def to_json(self) -> dict[str, Any]:
         """Return the report `articad.simulation/1`."""
@@ -169,6 +172,16 @@ def _findings(outcome: EngineOutcome) -> Iterator[Finding]:
             where=outcome.engine,
             message=f"{name} {outcome.version} does not load the model: {outcome.message}",
             hint="Run `articad audit` on the file: it names the cause.",
+        )
+        return
+    if outcome.unread:
+        shown = ", ".join(outcome.unread[:_NAMED]) + (f" and {len(outcome.unread) - _NAMED} more" if len(outcome.unread) > _NAMED else "")
+        yield Finding(
+            code="I_SIM_UNREAD",
+            where=outcome.engine,
+            message=f"{name} reads no inertia of {shown} from this file, so nothing was tried there.",
+            hint=f"Simulate a URDF of the model in {name}.",
+            value=len(outcome.unread),
         )
         return
     if outcome.exploded:

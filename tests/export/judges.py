@@ -40,7 +40,7 @@ from articad.simulation.examine import driving, simulate_file
 from articad.simulation.expected import held_to_kinematics
 from articad.simulation.loading import load
 from articad.simulation.trial import try_out
-from articad.simulation.verdict import EngineOutcome, SimulationVerdict
+from articad.simulation.verdict import CALM, DRIFT, GROWTH, RESIDUAL, SHARE, EngineOutcome, SimulationVerdict
 from articad_bench.reference import reference_folder
 from articad_bench.task import tasks_in
 
@@ -83,7 +83,8 @@ class Said(NamedTuple):
     words: str
 
 
-SITES: Final = Said(None, "not judged: Newton's reader drops the second site of a connect")
+NOT_JUDGED: Final = "not judged"
+SITES: Final = Said(None, f"{NOT_JUDGED}: Newton's reader drops the second site of a connect")
 
 
 def folder_of(name: str) -> Path:
@@ -146,6 +147,8 @@ def _verdict(outcome: EngineOutcome) -> Said:
     words = f"{least:.4g} % of {len(reaches)}" if reaches else "stands"
     if outcome.loads is None:
         return Said(None, "not installed")
+    if outcome.unread:
+        return Said(None, f"{NOT_JUDGED}: PyBullet reads no inertia of {len(outcome.unread)} links")
     if not findings.ok:
         return Said(passed=False, words="; ".join(finding.message for finding in findings if finding.code.startswith("E_")))
     if outcome.passed_over:
@@ -261,19 +264,19 @@ def _codes(requirements: object) -> list[str]:
 
 
 _SOURCES: Final = {
-    "MuJoCo": ("articad/simulation", "mujoco_trial strokes verdict expected examine", "mujoco"),
-    "PyBullet": ("articad/simulation", "bullet_trial strokes verdict examine", "pybullet"),
-    "Newton": ("articad/simulation", "strokes verdict expected ../../tests/export/newton_trial", ""),
+    "MuJoCo": ("articad/simulation", "mujoco_trial strokes expected examine", "mujoco"),
+    "PyBullet": ("articad/simulation", "bullet_trial strokes examine", "pybullet"),
+    "Newton": ("articad/simulation", "strokes expected ../../tests/export/newton_trial", ""),
     "Pinocchio": ("articad/simulation", "loading", "pin"),
 }
-"""Folder, modules and package of the engines that run in programs of this project."""
+"""Folder, modules and package of the engines that run in programs of this project; `verdict` counts by its limits."""
 
 
 @cache
 def digest_of_judge(name: str) -> str:
     """Return a digest of a judge, "Newton usd": of its program without comments, and of its version."""
-    engine = name.split()[0]
-    found = hashlib.sha256()
+    engine = name.partition(" ")[0]
+    found = hashlib.sha256(repr((SHARE, CALM, DRIFT, RESIDUAL, GROWTH) if engine in SIMULATORS else ()).encode())
     folder, modules, package = _SOURCES.get(engine, ("", "", ""))
     for module in modules.split():
         found.update(ast.dump(ast.parse((ROOT / folder / f"{module}.py").read_text())).encode())
@@ -326,8 +329,8 @@ the one that kinematics computes for it. `articad sim` requires 99 %.
 - Drake and SAPIEN are not in the table: `pytest -m engines_all tests/export/test_elsewhere.py` loads URDFs of all kinds of joints in both, and MJCF and SDF in
   Drake, in an environment of their own, and compares the poses of all links.
 - PyBullet does not collide parts of one body unless it is asked to, so its rows do not test collision shapes. From MJCF it reads neither the
-  type of a geom from its class nor `fullinertia` nor, without `limited`, a joint's range. So links whose shapes are all meshes have no inertia
-  there, and the numbers of `tusi_couple` diverge. Hinges are driven over one turn. With the types stated, the doors of `wardrobe` lag instead.
+  type of a geom from its class nor `fullinertia`, so links whose shapes are all meshes have no inertia there: such a file is not judged. Nor does it read a
+  joint's range without `limited`: hinges of an MJCF are driven over one turn.
 """
 
 
@@ -362,7 +365,7 @@ def summary(record: Mapping[str, Mapping[str, Any]]) -> str:
     ]
     others = [name for name in OTHERS if name.split()[0] not in {"Pinocchio", "check_urdf"}]
     for judge in [f"{engine} {kind}" for engine in SIMULATORS for kind in ("mjcf", "urdf", "usd")] + others:
-        said = {name: row[judge] for name, row in record.items() if judge in row and row[judge]["words"] != SITES.words}
+        said = {name: row[judge] for name, row in record.items() if judge in row and not row[judge]["words"].startswith(NOT_JUDGED)}
         if not said:
             continue
         wrong = sorted(name for name, one in said.items() if one["passed"] is False)
@@ -421,7 +424,11 @@ def main(words: list[str]) -> int:
                         print(f"{name}: {judge} {'is of an older export or judge' if judge in known else 'was not asked'}")  # noqa: T201
                     continue
                 named = {judge, judge.split()[0]}
-                if named & options["--without"] or (options["--only"] and not named & options["--only"]) or (fresh and "--again" not in words):
+                if (
+                    named & options["--without"]
+                    or (options["--only"] and not named & options["--only"])
+                    or (fresh and "--again" not in words)
+                ):
                     continue
                 said = ask()
                 print(f"{name}: {judge}: {said.words}", flush=True)  # noqa: T201 - a command

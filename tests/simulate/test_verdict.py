@@ -294,6 +294,27 @@ def test_bullet_holds_a_model_and_drives_its_joints(limits: str | None, span: tu
     assert outcome.speed_at_rest < 1e-6
 
 
+def test_a_link_whose_inertia_bullet_does_not_read_is_told_and_nothing_is_tried(tmp_path: Path) -> None:
+    """PyBullet ignores `fullinertia`; a box that states its type gives the link an inertia."""
+    pytest.importorskip("pybullet", reason="PyBullet has no wheel for this Python")
+    path = tmp_path / "model.xml"
+    text = """<mujoco><compiler angle="radian"/><worldbody><body name="base"><body name="arm">
+      <joint name="turn" type="hinge" axis="0 1 0" limited="true" range="-1 1"/>
+      <inertial pos="0 0 0" mass="1" fullinertia="0.01 0.01 0.01 0 0 0"/>{}</body></body></worldbody></mujoco>"""
+
+    path.write_text(text.format(""))
+    verdict = simulate_file(path)
+    assert [finding.code for finding in verdict.findings] == ["I_SIM_UNREAD"]
+    assert "PyBullet reads no inertia of arm" in str(verdict.findings)
+    assert verdict.ok  # MuJoCo tried it
+    assert not simulate_file(path, engines=("pybullet",)).ok
+
+    path.write_text(text.format('<geom type="box" size="0.1 0.1 0.1"/>'))
+    (outcome,) = simulate_file(path, engines=("pybullet",)).outcomes
+    assert outcome.unread == ()
+    assert len(outcome.reaches) == 1
+
+
 def test_the_film_follows_what_the_engine_says(tmp_path: Path) -> None:
     verdict_on(tmp_path)
     outcome = try_out("mujoco", tmp_path / "model.xml")
