@@ -130,8 +130,8 @@ class EngineOutcome:
         """Return the measurements of another process."""
         reaches = [JointReach(**reach | {"allowed": reach.get("allowed") and tuple(reach["allowed"])}) for reach in row.pop("reaches", [])]
         frames = [FilmFrame(**frame) for frame in row.pop("frames", [])]
-        names = {name: tuple(row.pop(name, ())) for name in ("passed_over", "unread")}
-        return cls(**row, **names, reaches=reaches, frames=frames)
+        passed_over, unread = tuple(row.pop("passed_over", ())), tuple(row.pop("unread", ()))
+        return cls(**row, reaches=reaches, frames=frames, passed_over=passed_over, unread=unread)
 
 
 @dataclass(frozen=True)

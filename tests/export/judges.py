@@ -280,7 +280,13 @@ def digest_of_judge(name: str) -> str:
     folder, modules, package = _SOURCES.get(engine, ("", "", ""))
     for module in modules.split():
         found.update(ast.dump(ast.parse((ROOT / folder / f"{module}.py").read_text())).encode())
-    asked = {"Newton": (newton,), "check_urdf": (check_urdf,), "simcheck": (simcheck,), "USD": (usd_validator,), "SimReady": (simready,)}
+    asked: dict[str, tuple[Callable[..., Any], ...]] = {
+        "Newton": (newton,),
+        "check_urdf": (check_urdf,),
+        "simcheck": (simcheck,),
+        "USD": (usd_validator,),
+        "SimReady": (simready,),
+    }
     for function in asked.get(engine, ()):
         found.update(ast.dump(ast.parse(inspect.getsource(function))).encode())
     if package:

@@ -18,7 +18,7 @@ def fine(mesh: TriMesh, times: int = 3) -> TriMesh:
         a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
         ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
         corners = np.concatenate([np.stack(one, axis=1) for one in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
-        mesh = TriMesh(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)).welded()
+        mesh = TriMesh(corners.reshape(-1, 3), np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3)).welded()
     return mesh
 
 
@@ -45,7 +45,7 @@ def test_a_flat_side_with_random_small_gaps_is_closed_as_it_was(seed: int) -> No
 
 def test_loose_triangles_of_a_file_without_indices_are_joined_first() -> None:
     whole = fine(cylinder(10, 20), 1)
-    loose = TriMesh(whole.vertices[whole.triangles].reshape(-1, 3), np.arange(3 * len(whole.triangles)).reshape(-1, 3))
+    loose = TriMesh(whole.vertices[whole.triangles].reshape(-1, 3), np.arange(3 * len(whole.triangles), dtype=np.int32).reshape(-1, 3))
     closed = without_gaps(without(loose, np.arange(len(loose.triangles)) == 7))
 
     assert closed.is_closed
@@ -60,5 +60,5 @@ def test_an_opening_that_is_meant_is_left() -> None:
 
     assert capped(tray) is None
     assert without_gaps(tray) is tray
-    assert capped(TriMesh(np.eye(3), np.array([[0, 1, 2]]))) is None
+    assert capped(TriMesh(np.eye(3), np.array([[0, 1, 2]], dtype=np.int32))) is None
     assert without_gaps(whole) is whole
