@@ -445,3 +445,17 @@ def test_the_parts_list_weighs_what_the_run_weighs(chest: Path, tmp_path: Path, 
     assert sum(row["total_kg"] for row in bill["items"]) == pytest.approx(built["assembly"]["mass_kg"], rel=1e-12)
     assert json.loads((tmp_path / "papers" / "chest_bom.json").read_text())["items"] == bill["items"]
     assert Run.view(tmp_path / "run").hashes() == before
+
+
+def test_drawings_are_written_beside_the_run_and_say_what_they_show(chest: Path, tmp_path: Path, report: Any) -> None:
+    report("build", chest, "--out", tmp_path / "run", "--no-pictures", "--export", "plan")
+    before = Run.view(tmp_path / "run").hashes()
+    code, drawn = report("drawing", tmp_path / "run", "--out", tmp_path / "papers")
+    assert (code, drawn["schema"], len(drawn["sheets"])) == (0, "articad.drawings/1", 3)
+    assert {Path(file).name for file in drawn["files"]} == {
+        f"chest_{name}.{kind}" for name in ("assembly", "box", "lid") for kind in ("svg", "dxf")
+    }
+    assert all(Path(file).stat().st_size > 1000 for file in drawn["files"])
+    assert {"text": "60", "value": 60.0, "name": "width", "view": "front"} in drawn["sheets"][1]["dimensions"]
+    assert Run.view(tmp_path / "run").hashes() == before
+    assert report("drawing", tmp_path / "run", "bix", "--out", tmp_path / "papers")[0] == 3

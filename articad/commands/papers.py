@@ -1,4 +1,4 @@
-"""Write the papers that a workshop needs: the parts list and the cut list."""
+"""Write the papers that a workshop needs: the parts list, the cut list, and drawings."""
 
 from __future__ import annotations
 
@@ -15,16 +15,26 @@ if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
 
 BILLS: Final = ("csv", "json", "xlsx")
+DRAWINGS: Final = ("svg", "pdf", "dxf")
 PURCHASED = argument("--purchased", metavar="NAMES", type=names, default=(), help="parts that are bought; * and ? are wildcards")
 PAPERS_OUT = argument("--out", metavar="DIR", default="papers", help="where to write (papers)")
 
 
 def bills(text: str) -> tuple[str, ...]:
     """Read `csv,xlsx`."""
+    return _chosen(text, BILLS)
+
+
+def drawings(text: str) -> tuple[str, ...]:
+    """Read `svg,dxf`."""
+    return _chosen(text, DRAWINGS)
+
+
+def _chosen(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
     chosen = names(text)
     for name in chosen:
-        if name not in BILLS:
-            raise argparse.ArgumentTypeError(f"unknown format {name!r}{closest(name, BILLS)}; there are {', '.join(BILLS)}")
+        if name not in known:
+            raise argparse.ArgumentTypeError(f"unknown format {name!r}{closest(name, known)}; there are {', '.join(known)}")
     return chosen
 
 
@@ -107,6 +117,54 @@ def _bom(options: argparse.Namespace, terminal: Terminal) -> Report:
     for name in files:
         terminal.say(str(Path(options.out) / name))
     return report | {"files": [str(Path(options.out) / name) for name in files]}
+
+
+@command(
+    "drawing",
+    "Draw a run or a plan for a workshop: a sheet with balloons and parts list, and a dimensioned sheet of each item, or of one part.",
+    argument("target", metavar="RUN|PLAN_DIR"),
+    argument("part", metavar="PART", nargs="?", help="draw the sheet of this part only"),
+    argument("--to", metavar="FORMATS", dest="drawings", type=drawings, default=("svg", "dxf"), help="svg, pdf, dxf (svg,dxf)"),
+    argument("--size", choices=["A4", "A3"], default=None, help="size of the sheets of parts (A4, or A3 where that is too small)"),
+    PURCHASED,
+    PAPERS_OUT,
+    SANDBOX,
+)
+def _drawing(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.commands.steps import sandbox_level
+    from articad.papers.drawing import drawings_of
+    from articad.papers.sheet import A3, A4
+    from articad.papers.writers import require_pdf, written_dxf, written_pdf, written_svg
+    from articad.runs.run import write_atomically
+
+    if "pdf" in options.drawings:
+        require_pdf()
+    assembly = loaded(options.target, options, terminal)
+    size = {"A4": A4, "A3": A3, None: None}[options.size]
+    with terminal.progress("Drawing") as tell:
+        sheets = []
+        for sheet in drawings_of(assembly, options.part, purchased=options.purchased, size=size, sandbox=sandbox_level(options)):
+            sheets.append(sheet)
+            tell(sheet.name, "done")
+    files: dict[str, bytes] = {}
+    for sheet in sheets:
+        name = f"{assembly.name}_{'assembly' if sheet.part is None else sheet.part}"
+        if "svg" in options.drawings:
+            files[f"{name}.svg"] = written_svg(sheet)
+        if "dxf" in options.drawings:
+            files[f"{name}.dxf"] = written_dxf(sheet)
+    if "pdf" in options.drawings:
+        files[f"{assembly.name}{'' if options.part is None else f'_{options.part}'}_drawings.pdf"] = written_pdf(sheets, assembly.name)
+    for name, content in files.items():
+        write_atomically(Path(options.out) / name, content)
+        terminal.say(str(Path(options.out) / name))
+    return {
+        "schema": "articad.drawings/1",
+        "ok": True,
+        "sheets": [sheet.told for sheet in sheets],
+        "files": [str(Path(options.out) / name) for name in files],
+        "findings": [],
+    }
 
 
 def _cut_list(assembly: Any, items: Any, options: argparse.Namespace) -> tuple[Report, str, bytes]:

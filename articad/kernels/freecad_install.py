@@ -134,7 +134,7 @@ class FreeCAD:
         """Run a Python file inside FreeCAD; it sees its arguments as `ARGUMENTS`, and no network.
 
         Args:
-            program: The Python file; standard library, FreeCAD's modules, and `inside_freecad/numbered.py` only.
+            program: The Python file; standard library, FreeCAD's modules, `inside_freecad/numbered.py` and `sizes.py` only.
             folder: Its working folder, to read and to write; without it only a private /tmp can be written.
             files: Open files that it inherits under the same numbers.
             arguments: Its arguments.
@@ -150,7 +150,7 @@ class FreeCAD:
             raise unavailable(f"FreeCAD in {self.root} needs bubblewrap, which does not work here ({sandbox.bubblewrap_problem()})")
         shown = "/program.py" if confined else str(program.resolve())
         common = "/confinement" if confined else str(_INSIDE_PROGRAMS)
-        run = f"import sys;sys.path.append({common!r});import numbered;sys.path.remove({common!r})"  # what the programs share
+        run = f"import sys;sys.path.append({common!r});import numbered,sizes;sys.path.remove({common!r})"  # what the programs share
         run += f";ARGUMENTS={list(map(str, arguments))!r};exec(compile(open({shown!r}).read(),{program.name!r},'exec'))"
         before = [*_steady(), *_limited(limits)]
         if not confined:
@@ -362,7 +362,7 @@ def _cpu(limits: FreeCADLimits) -> int:
 def _confinement_files() -> dict[str, Path]:
     """Return the files that are visible in /confinement."""
     modules = {f"{module.__name__.rpartition('.')[2]}.py": Path(str(module.__file__)) for module in (landlock, seccomp)}
-    return {name: _INSIDE_PROGRAMS / name for name in ("confinement.py", "numbered.py")} | modules
+    return {name: _INSIDE_PROGRAMS / name for name in ("confinement.py", "numbered.py", "sizes.py")} | modules
 
 
 def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | None, files: Collection[int], seconds: float) -> FreeCADEnded:

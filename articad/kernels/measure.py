@@ -237,10 +237,15 @@ def _center(shape: TopoDS_Shape) -> list[float] | None:
     return None if box.IsVoid() else [(low + high) / 2 for low, high in zip(_xyz(box.CornerMin()), _xyz(box.CornerMax()), strict=True)]
 
 
-def _moved(solid: TopoDS_Shape, matrix: list[list[float]]) -> TopoDS_Shape:
+def placed(shape: TopoDS_Shape, matrix: list[list[float]]) -> TopoDS_Shape:
+    """Return a copy of a shape under a rigid motion or a reflection `(4, 4)`."""
     motion = gp_Trsf()
     motion.SetValues(*(value for row in matrix[:3] for value in row))
-    return TopoDS.Solid(BRepBuilderAPI_Transform(solid, motion, theCopyGeom=True).Shape())
+    return BRepBuilderAPI_Transform(shape, motion, theCopyGeom=True).Shape()
+
+
+def _moved(solid: TopoDS_Shape, matrix: list[list[float]]) -> TopoDS_Shape:
+    return TopoDS.Solid(placed(solid, matrix))
 
 
 def npz(mesh: Mesh) -> bytes:

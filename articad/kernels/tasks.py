@@ -8,7 +8,7 @@ import os
 import signal
 from typing import Any
 
-from articad.kernels import measure, part_script, step_tree, tracing
+from articad.kernels import measure, part_script, projection, step_tree, tracing
 
 SELF_INTERSECTION_SECONDS = 5.0  # the check is quadratic in faces; a swept thread would need 12 s
 
@@ -87,6 +87,20 @@ def read_assembly(request: Json, files: dict[str, int]) -> None:
     _write(files["report"], b"".join(measure.to_json(row) for row in ({"ok": True, "parts": len(rows)}, *rows)))
 
 
+def project_shapes(request: Json, files: dict[str, int]) -> None:
+    """Task `project`: views of B-reps, each of which is placed in one frame, as lines on paper."""
+    job, content = json.loads(_content(files["job"])), _content(files["shape"])
+    signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
+    shapes, start = [], 0
+    for length, matrix in zip(job["lengths"], job["matrices"], strict=True):
+        shapes.append(measure.placed(measure.read_shape("brep", content[start : start + length]), matrix))
+        start += length
+    whole = measure.compound(shapes)
+    lines = {"views": [projection.projected(whole, view) for view in job["views"]], "features": projection.features(whole)}
+    _write(files["lines"], measure.to_json(lines))
+    _write(files["report"], measure.to_json({"ok": True}))
+
+
 TASKS = {
     "script": run_script,
     "trace": trace_script,
@@ -94,6 +108,7 @@ TASKS = {
     "pieces": measure_shape,
     "judge": judge_shape,
     "assembly": read_assembly,
+    "project": project_shapes,
 }
 
 

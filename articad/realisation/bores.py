@@ -11,9 +11,9 @@ from articad.arrays import FloatArray
 from articad.geometry.faces import Face
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
-from articad.realisation.sides import sides
+from articad.realisation.sides import PartFace, sides
 
-__all__ = ["TILT", "Bore", "along", "at_height", "beside", "bore_of", "offset"]
+__all__ = ["TILT", "Bore", "along", "at_height", "beside", "bore_and_pin", "bore_of", "offset"]
 
 _Z = np.array([0.0, 0.0, 1.0])
 TILT = 1e-3  # rad: axes that differ by less are parallel
@@ -44,18 +44,28 @@ def bore_of(scene: Scene, joint: Joint) -> Bore | None:
 
     Only cylinders of B-reps count: where a mesh is the solid itself, its facets are what meets.
     """
+    pair = bore_and_pin(scene, joint)
+    if pair is None:
+        return None
+    bore, pin = (one.face for one in pair)
+    return Bore(2 * bore.radius, 2 * pin.radius, bore.off + pin.off)
+
+
+def bore_and_pin(scene: Scene, joint: Joint) -> tuple[PartFace, PartFace] | None:
+    """Return the faces of the bore and the pin that `bore_of` measures, in the joint's frame, with their parts; None if there is none."""
     if joint.type not in _TURNING:
         return None
     found = []
-    faces = [[one.face for one in side if _is_about_axis(one.face) and scene.deflections[one.part] > 0] for side in sides(scene, joint)]
+    faces = [[one for one in side if _is_about_axis(one.face) and scene.deflections[one.part] > 0] for side in sides(scene, joint)]
     for first, second in ((faces[0], faces[1]), (faces[1], faces[0])):
-        for bore in (face for face in first if face.hollow):
-            for pin in (face for face in second if not face.hollow):
-                apart = offset(bore, pin)
-                (low, high), (start, end) = along(bore), along(pin)
-                if apart <= abs(bore.radius - pin.radius) + bore.off + pin.off and min(high, end) > max(low, start):
-                    found.append(Bore(2 * bore.radius, 2 * pin.radius, bore.off + pin.off))
-    return min(found, key=lambda one: abs(one.play), default=None)
+        for bore in (one for one in first if one.face.hollow):
+            for pin in (one for one in second if not one.face.hollow):
+                apart = offset(bore.face, pin.face)
+                (low, high), (start, end) = along(bore.face), along(pin.face)
+                near = abs(bore.face.radius - pin.face.radius) + bore.face.off + pin.face.off
+                if apart <= near and min(high, end) > max(low, start):
+                    found.append((bore, pin))
+    return min(found, key=lambda pair: abs(pair[0].face.radius - pair[1].face.radius), default=None)
 
 
 def along(face: Face, axis: FloatArray = _Z) -> tuple[float, float]:

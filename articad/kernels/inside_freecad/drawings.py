@@ -9,7 +9,6 @@ from __future__ import annotations
 import builtins
 import json
 import math
-import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,12 +17,12 @@ from typing import Any
 import FreeCAD as App
 import Part
 from PySide import QtCore
+from sizes import SAME, named_sizes  # type: ignore[import-not-found]
 
 Json = dict[str, Any]
 
 vars(builtins)["QtCore"] = QtCore  # without a window, the module of exploded views does not import it, but needs it
 
-_SAME = 1e-6  # mm
 _PATIENCE = 120.0  # seconds for a page
 _ROW, _COLUMN, _FIRST = 7.0, 9.0, 9.0  # mm between dimensions, and to the first
 _CIRCLES = {"top": (0, 0, 1), "front": (0, 1, 0), "left": (1, 0, 0)}  # view -> axis of the circles that it shows as such
@@ -31,8 +30,6 @@ _COARSE = 0.5  # mm
 _MOST = 12  # dimensions of a page
 _WIDTHS = (45, 130, 60, 110, 80)  # pixels of the columns of a parts list
 _CIRCLE = "Part::GeomCircle"
-_OF_CIRCLE = re.compile(r"radius|diameter")  # names of dimensions that no straight edge has
-_OF_EDGE = re.compile(r"length|depth|height|width|thick|play|clearance|gap|span|pitch|_[xyz]$")  # and those that no circle has
 
 
 def main() -> None:
@@ -198,39 +195,15 @@ class _Drawing:
     def _dimensions(self, form: Json, shape: Any) -> Iterator[tuple[str, str, list[str], float, str]]:
         """Yield the dimensions of a page: the view, FreeCAD's kind, elements of the shape, the value and the name in the plan.
 
-        The overall sizes first, where vertices are that far apart; then the dimensions of the plan that a circle or an edge has. Equal numbers are
-        not enough: a length is not that of a circle, a radius not that of an edge, and a circle or edge has one dimension.
+        An overall size has a dimension where vertices are that far apart.
         """
-        names, told, taken = dict(form["dimensions"]), 0, set()
         box = shape.optimalBoundingBox(False)
         low, high = (box.XMin, box.YMin, box.ZMin), (box.XMax, box.YMax, box.ZMax)
-        for axis, view, kind in ((0, "front", "DistanceX"), (2, "front", "DistanceY"), (1, "top", "DistanceY")):
-            ends = _ends(shape, axis, low[axis], high[axis])
-            if ends is not None:
-                size = high[axis] - low[axis]
-                name = next((key for key, value in names.items() if abs(value - size) < _SAME and not _OF_CIRCLE.search(key)), "")
-                names.pop(name, None)
-                told += 1
-                yield view, kind, list(ends), size, name
-        circles, edges = list(_circles(shape)), list(_straight(shape))
-        for name, value in names.items():
-            round_ones = (row for row in circles if abs(row[2] - value) < _SAME or abs(2 * row[2] - value) < _SAME)
-            found = None if _OF_EDGE.search(name) else next((row for row in round_ones if row[1] not in taken), None)
-            if told >= _MOST or value <= 0.0:
-                return
-            if found is not None:
-                view, element, radius = found
-                kind = "Radius" if abs(radius - value) < _SAME else "Diameter"
-                told += 1
-                taken.add(element)
-                yield view, kind, [element], value, name
-                continue
-            straight = (row for row in edges if abs(row[3] - value) < _SAME and row[2] not in taken)
-            edge = None if _OF_CIRCLE.search(name) else next(straight, None)
-            if edge is not None:
-                told += 1
-                taken.add(edge[2])
-                yield edge[0], edge[1], [edge[2]], value, name
+        overall = [
+            (view, kind, _ends(shape, axis, low[axis], high[axis]), high[axis] - low[axis])
+            for axis, view, kind in ((0, "front", "DistanceX"), (2, "front", "DistanceY"), (1, "top", "DistanceY"))
+        ]
+        yield from named_sizes(form["dimensions"], overall, list(_circles(shape)), list(_straight(shape)), _MOST)
 
     # ------------------------------------------------------------------ the exploded view
 
@@ -271,7 +244,7 @@ def _ends(shape: Any, axis: int, low: float, high: float) -> tuple[str, str] | N
     """Return vertices at both ends of a shape along an axis, those nearest to a corner of its box; None if an end has no vertex."""
     found = []
     for end in (low, high):
-        at = [(number, vertex.Point) for number, vertex in enumerate(shape.Vertexes, start=1) if abs(vertex.Point[axis] - end) < _SAME]
+        at = [(number, vertex.Point) for number, vertex in enumerate(shape.Vertexes, start=1) if abs(vertex.Point[axis] - end) < SAME]
         if not at:
             return None
         found.append(min(at, key=lambda row: (round(sum(row[1]) - row[1][axis], 6), row[0]))[0])
@@ -284,7 +257,7 @@ def _circles(shape: Any) -> Iterator[tuple[str, str, float]]:
         if edge.Curve.TypeId != _CIRCLE:
             continue
         for view, axis in _CIRCLES.items():
-            if abs(abs(edge.Curve.Axis * App.Vector(*axis)) - 1.0) < _SAME:
+            if abs(abs(edge.Curve.Axis * App.Vector(*axis)) - 1.0) < SAME:
                 yield view, f"Edge{number}", edge.Curve.Radius
 
 
@@ -296,7 +269,7 @@ def _straight(shape: Any) -> Iterator[tuple[str, str, str, float]]:
             continue
         along = edge.Vertexes[1].Point - edge.Vertexes[0].Point
         for axis, (view, kind) in shown.items():
-            if abs(abs(along[axis]) - edge.Length) < _SAME:
+            if abs(abs(along[axis]) - edge.Length) < SAME:
                 yield view, kind, f"Edge{number}", edge.Length
 
 

@@ -1,0 +1,244 @@
+"""Drawings: every dimension is the plan's number, views are projections of the solid, nothing overlaps, and DXF is read by others."""
+
+from __future__ import annotations
+
+import io
+import itertools
+import json
+import math
+import tempfile
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pytest
+
+from articad.assembly import Assembly
+from articad.errors import ArticadError
+from articad.kernels import freecad_install
+from articad.kernels.inside_freecad.sizes import named_sizes
+from articad.kernels.kernel import BuildCache
+from articad.kernels.views import View, ViewKernel
+from articad.papers.drawing import drawings_of
+from articad.papers.hatching import hatched
+from articad.papers.part_sheet import FRONT
+from articad.papers.sheet import DrawingSheet, Lettering, text_width
+from articad.papers.writers import written_dxf, written_pdf, written_svg
+from articad.plan.schema import AssemblyPlan
+from tests.freecad import opened
+
+PLATE = """
+from build123d import Align, Box, Cylinder, Pos, Rot
+def build(part):
+    d = part.dimensions
+    up = (Align.CENTER, Align.CENTER, Align.MIN)
+    plate = Box(d["width"], d["depth"], d["thickness"], align=up) + Pos(0, 0, d["thickness"]) * Cylinder(d["boss_radius"], d["boss_height"], align=up)
+    plate -= Cylinder(d["bore_diameter"] / 2, 100)
+    for x in (-1, 1):
+        plate -= Pos(x * d["hole_x"], d["hole_y"], d["thickness"] - d["hole_depth"]) * Cylinder(d["hole_radius"], 100, align=up)
+    return plate, {"bore": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
+"""
+PIN = """
+from build123d import Align, Cylinder, Pos
+def build(part):
+    d = part.dimensions
+    pin = Cylinder(d["pin_diameter"] / 2, d["length"], align=(Align.CENTER, Align.CENTER, Align.MIN))
+    pin = pin + Pos(0, 0, -d["head_height"]) * Cylinder(d["head_radius"], d["head_height"], align=(Align.CENTER, Align.CENTER, Align.MIN))
+    return Pos(0, 0, -0.5) * pin, {"axis": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
+"""
+PLAN: dict[str, Any] = {
+    "schema": "articad.plan/1", "name": "bearing", "ground": "plate", "freedoms": 1,
+    "materials": [{"name": "steel", "density_kg_m3": 7850, "color": "#8a9299"}],
+    "parts": [
+        {
+            "name": "plate", "material": "steel", "description": "A plate with a boss, a bore and two blind holes.",
+            "dimensions": {
+                "width": 81.5, "depth": 44, "thickness": 12, "boss_radius": 13, "boss_height": 9, "bore_diameter": 10.01, "hole_x": 30.25,
+                "hole_y": 7, "hole_radius": 2.6, "hole_depth": 8,
+            },
+            "connectors": [{"name": "bore", "o": [0, 0, 0], "z": [0, 0, 1], "x": [1, 0, 0], "kind": "bore_axis", "label": "bore"}],
+        },
+        {
+            "name": "pin", "material": "steel", "description": "A pin with a head.",
+            "dimensions": {"pin_diameter": 9.985, "length": 26, "head_radius": 9, "head_height": 4},
+            "connectors": [{"name": "axis", "o": [0, 0, 0], "z": [0, 0, 1], "x": [1, 0, 0], "kind": "shaft_axis", "label": "axis"}],
+        },
+    ],
+    "joints": [{"name": "turn", "type": "revolute", "parent": "plate.bore", "child": "pin.axis", "angle_deg": "endless", "fit": "10 H7/g6"}],
+}  # fmt: skip
+
+
+@cache
+def bearing() -> Assembly:
+    folder = tempfile.mkdtemp()
+    return Assembly.from_plan(AssemblyPlan.from_json(PLAN), {"plate": PLATE, "pin": PIN}, cache=BuildCache(Path(folder)))
+
+
+@cache
+def sheets() -> tuple[DrawingSheet, ...]:
+    return tuple(drawings_of(bearing()))
+
+
+def sheet(name: str) -> DrawingSheet:
+    return next(one for one in sheets() if one.part == name)
+
+
+def dimensions_of(name: str) -> dict[str, float]:
+    return next(part["dimensions"] for part in PLAN["parts"] if part["name"] == name)
+
+
+@pytest.mark.parametrize("name", ["plate", "pin"])
+def test_every_dimension_of_a_drawing_equals_the_plan_s_number(name: str) -> None:
+    told: Any = sheet(name).told
+    planned = dimensions_of(name)
+    for row in told["dimensions"]:
+        if row["name"]:
+            is_width = row["text"].startswith("Ø") and "radius" in row["name"]  # of a body of revolution
+            assert row["value"] == pytest.approx(planned[row["name"]] * (2 if is_width else 1), abs=1e-9)
+        assert float(row["text"].lstrip("RØ")) == pytest.approx(row["value"], abs=1e-4)
+    for dimension in sheet(name).dimensions:
+        ends = np.array([dimension.start, dimension.end])
+        drawn = abs(np.diff(ends[:, int(dimension.vertical)])[0]) / sheet(name).scale
+        assert drawn == pytest.approx(dimension.value, abs=1e-3)
+    for by_hole, row in told["by_holes"].items():
+        assert row["value"] == planned[by_hole]
+    shown = {row["name"] for row in told["dimensions"]} | set(told["by_holes"]) | set(told["listed"])
+    assert shown - {""} == set(planned)  # each number of the plan is on the sheet
+    assert {key: float(value) for key, value in told["listed"].items()} == {key: planned[key] for key in told["listed"]}
+
+
+def test_the_views_show_what_a_workshop_needs() -> None:
+    plate: Any = sheet("plate").told
+    assert {row["name"] for row in plate["dimensions"]} >= {"width", "depth", "thickness", "boss_radius"}
+    assert set(plate["by_holes"]) == {"bore_diameter", "hole_radius", "hole_depth"}
+    pin: Any = sheet("pin").told
+    # a body of revolution is dimensioned by its diameter, once
+    assert [row["name"] for row in pin["dimensions"] if row["text"] in ("Ø18", "R9")] == ["head_radius"]
+
+
+def test_the_table_of_holes_has_the_holes_of_the_script() -> None:
+    told: Any = sheet("plate").told
+    bore, *small = told["holes"]
+    assert bore["diameter_mm"] == pytest.approx(10.01, abs=2e-3)
+    assert (bore["depth_mm"], bore["through"]) == (pytest.approx(21, abs=1e-3), True)
+    assert [hole["centre_mm"] for hole in small] == [pytest.approx([x, 7, 8], abs=2e-3) for x in (-30.25, 30.25)]
+    assert [(hole["depth_mm"], hole["through"]) for hole in small] == [(pytest.approx(8, abs=1e-3), False)] * 2
+
+
+def test_fits_are_told_by_the_classes_of_iso_286_on_both_parts() -> None:
+    """H7 at 10 mm: +15/0 µm, g6: -5/-14 µm (ISO 286-2, tables 6 and 21)."""
+    plate, pin = (sheet(name).told["holes"] for name in ("plate", "pin"))
+    assert [hole["fit"] for hole in plate] == ["Ø10 H7 (+0.015/0)", "", ""]  # type: ignore[attr-defined]
+    assert [hole["fit"] for hole in pin] == ["Ø10 g6 (-0.005/-0.014)"]  # type: ignore[attr-defined]
+
+
+def test_views_are_projections_of_the_solid_and_a_section_cuts_it() -> None:
+    brep = bearing().realised["plate"].built.solid.brep
+    assert brep is not None
+    section = View("section", FRONT.right, FRONT.up, cut=0.0)
+    views, features = ViewKernel().project([(brep, bearing().at()["plate"])], [FRONT, section])
+    points = np.array([[x, y] for line in views["front"].visible if len(line) == 4 for x, y in (line[:2], line[2:])])
+    assert points.min(axis=0) == pytest.approx([-81.5 / 2, 0])
+    assert points.max(axis=0) == pytest.approx([81.5 / 2, 21])
+    assert views["front"].hidden
+    # the plane y = 0 cuts the plate and the boss, not the small holes at y = 7, beside the bore
+    loops = [(loop, np.roll(loop, -1, axis=0)) for face in views["section"].cut for loop in face]
+    area = sum(0.5 * abs((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) for a, b in loops)  # shoelace formula
+    assert area == pytest.approx((81.5 - 10.01) * 12 + (26 - 10.01) * 9)
+    assert sorted({round(float(row[6]), 3) for row in features.circles}) == [2.6, 5.005, 13]
+
+
+def test_hatching_fills_a_face_and_spares_its_holes() -> None:
+    square = np.array([[0, 0], [40, 0], [40, 40], [0, 40]], dtype=float)
+    hole = np.array([[10, 10], [10, 30], [30, 30], [30, 10]], dtype=float)
+    length = sum(math.dist(a, b) for a, b in hatched([square, hole], spacing=0.5))
+    assert 0.5 * length == pytest.approx(40 * 40 - 20 * 20, rel=0.01)
+    middles = [((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) for a, b in hatched([square, hole])]
+    assert not [point for point in middles if all(10 < value < 30 for value in point)]
+
+
+def boxes(one: DrawingSheet) -> list[tuple[str, float, float, float, float]]:
+    def box(text: Lettering) -> tuple[str, float, float, float, float]:
+        wide = text_width(text.words, text.height)
+        back = {"start": 0.0, "middle": 0.5, "end": 1.0}[text.anchor] * wide
+        if text.turned:
+            return text.words, text.x - text.height, text.y - back, text.x, text.y - back + wide
+        return text.words, text.x - back, text.y, text.x - back + wide, text.y + text.height
+
+    return [box(text) for text in one.everything()[2]]
+
+
+@pytest.mark.parametrize("index", [0, 1, 2])
+def test_no_text_overlaps_another_or_leaves_the_frame(index: int) -> None:
+    one = sheets()[index]
+    left, bottom, right, top = one.inside
+    found = boxes(one)
+    assert [words for words, x0, y0, x1, y1 in found if x0 < left or y0 < bottom or x1 > right or y1 > top] == []
+    crossing = [(a[0], b[0]) for a, b in itertools.combinations(found, 2) if a[1] < b[3] and b[1] < a[3] and a[2] < b[4] and b[2] < a[4]]
+    assert crossing == []
+
+
+def test_dxf_is_as_large_as_the_part_and_its_dimensions_measure_it() -> None:
+    for name in ("plate", "pin"):
+        document = ezdxf.read(io.StringIO(written_dxf(sheet(name)).decode()))
+        assert not document.audit().errors
+        found = document.modelspace().query("DIMENSION")
+        measured = sorted(float(entity.get_measurement()) for entity in found)  # computed from its points
+        assert measured == pytest.approx(sorted(one.value for one in sheet(name).dimensions), abs=1e-3)
+    assert max(measured) > 20  # millimetres of the part, not of the paper
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+def test_freecad_reads_the_dxf(tmp_path: Path) -> None:
+    (tmp_path / "sheet.dxf").write_bytes(written_dxf(sheet("plate")))
+    program = tmp_path / "program.py"
+    program.write_text(
+        "import json, FreeCAD as App\n"
+        "App.ParamGet('User parameter:BaseApp/Preferences/Mod/Draft').SetBool('dxfUseDraftVisGroups', False)  # layers need a window\n"
+        "import Draft, Import\n"
+        "document = App.newDocument('sheet')\n"
+        "Import.readDXF('sheet.dxf', 'sheet')\n"
+        "edges = [edge for item in document.Objects if hasattr(item, 'Shape') for edge in item.Shape.Edges]\n"
+        "radii = [edge.Curve.Radius for edge in edges if edge.Curve.TypeId == 'Part::GeomCircle']\n"
+        "open('read.json', 'w').write(json.dumps({'edges': len(edges), 'radii': radii}))\n"
+    )
+    ended = freecad_install.find().run(program, folder=tmp_path)
+    assert (tmp_path / "read.json").exists(), ended.said
+    read = json.loads((tmp_path / "read.json").read_text())
+    assert read["edges"] > 100
+    assert all(any(abs(radius - wanted) < 1e-3 for radius in read["radii"]) for wanted in (2.6, 5.005, 13))
+
+
+def test_letters_are_as_wide_as_those_of_the_pdf() -> None:
+    metrics = pytest.importorskip("reportlab.pdfbase.pdfmetrics")
+    words = "".join(chr(code) for code in range(32, 127)) + "Ø±×°–"
+    assert text_width(words, 0.72) == pytest.approx(metrics.stringWidth(words, "Helvetica", 1.0), rel=1e-6)
+
+
+def test_svg_and_pdf_have_the_size_of_the_paper_and_equal_sheets_give_equal_bytes() -> None:
+    pytest.importorskip("reportlab")
+    plate = sheet("plate")
+    assert f'width="{plate.size[0]:g}mm" height="{plate.size[1]:g}mm"'.encode() in written_svg(plate)
+    content = written_pdf(sheets(), "bearing")
+    assert content.count(b"/Type /Page\n") == len(sheets())
+    assert content == written_pdf(sheets(), "bearing")
+    assert written_dxf(plate) == written_dxf(plate)
+
+
+def test_the_sheet_of_the_assembly_has_a_balloon_for_each_item_that_is_seen() -> None:
+    words = [text.words for text in sheets()[0].texts]
+    assert {"1", "2", "plate", "pin", "bearing"} <= set(words)
+
+
+def test_an_unknown_part_is_refused_with_the_nearest_name() -> None:
+    with pytest.raises(ArticadError, match="Did you mean 'plate'"):
+        next(drawings_of(bearing(), "plat"))
+
+
+def test_a_length_is_not_that_of_a_circle_and_no_edge_is_dimensioned_twice() -> None:
+    circles, edges = [("top", "c1", 5.0)], [("front", "DistanceX", "e1", 5.0), ("front", "DistanceX", "e2", 5.0)]
+    found = named_sizes({"left": -5.0, "pin_radius": 5.0, "length": 5.0, "width": 5.0, "height": 5.0}, [], circles, edges, 9)
+    assert [(name, elements) for *_, elements, _, name in found] == [("pin_radius", ["c1"]), ("length", ["e1"]), ("width", ["e2"])]
