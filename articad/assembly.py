@@ -46,6 +46,7 @@ from articad.plan.resolve import Fit, Material, ResolvedPart, ResolvedPlan, Waiv
 from articad.plan.schema import AssemblyPlan
 from articad.realisation.meshing import lost_meshes
 from articad.realisation.verdicts import Realisation, check_joints
+from articad.support.check import Support, check_support
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -563,6 +564,24 @@ class Assembly:
         product = self.product()
         poses = Poses(product.mechanism.parts, product.mechanism.at_rest)
         return assembly_order(product.scene(), poses, product.ground, name=product.name, others=end_poses(product.mechanism))
+
+    def check_support(self) -> Support:
+        """Examine whether the product stands, whether each part is carried, and what falls out when it is turned over.
+
+        At rest and at both ends of each driver's range, the other drivers at rest; nothing is proven between. Joints that `check_joints` does not
+        find unmade hold their parts; how far a part falls and which ways it has out is exact. All findings are warnings.
+        """
+        product = self.product()
+        scene, poses = product.scene(), dict(Poses(product.mechanism.parts, product.mechanism.at_rest))
+        rows = check_joints(scene, poses, reached=followed(product.mechanism)).rows
+        made = {row.joint for row in rows if row.verdict not in ("not made", "partly")}
+
+        def centre(placed: Mapping[str, SE3]) -> FloatArray | None:
+            masses = [part.mass.moved(placed[name]) for name, part in product.parts.items() if part.mass is not None]
+            return MassProperties.combined(masses).com if masses else None
+
+        others = end_poses(product.mechanism, middle=False)
+        return check_support(scene, poses, product.ground, others=others, made=made, centre_of_mass=centre)
 
     def certify(
         self,

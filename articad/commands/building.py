@@ -63,6 +63,11 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
         action="store_true",
         help="also report which surfaces form each joint, and which motions they leave free (builds a plan's parts)",
     ),
+    argument(
+        "--support",
+        action="store_true",
+        help="also report whether the product stands, what carries each part, and what falls out when it is turned over (builds a plan's parts)",
+    ),
     SANDBOX,
 )
 def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
@@ -81,7 +86,7 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
         name, findings = plan.name, check_plan(plan)
     terminal.findings(findings)
     terminal.say(f"{name}: {summaries.counted(findings)}.")
-    if not findings.ok or not (options.motion or options.joints or (Path(options.target) / "request.json").is_file()):
+    if not findings.ok or not (options.motion or options.joints or options.support or (Path(options.target) / "request.json").is_file()):
         return findings.to_json()
 
     assembly = loaded(options.target, options, terminal)
@@ -95,4 +100,9 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
             report["joints"] = assembly.check_joints().to_json()
         summaries.print_findings(report["joints"]["findings"], terminal)
         summaries.print_joints(report["joints"]["rows"], terminal)
+    if options.support:
+        with terminal.progress("Weighing"):
+            report["support"] = assembly.check_support().to_json()
+        summaries.print_findings(report["support"]["findings"], terminal)
+        summaries.print_support(report["support"], terminal)
     return report

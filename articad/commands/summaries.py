@@ -95,6 +95,28 @@ def print_joints(rows: list[Report], terminal: Terminal) -> None:
         terminal.say(f"  {row['joint']}: {row['type']}, {row['verdict']}; {'; '.join(told)}")
 
 
+def print_support(report: Report, terminal: Terminal) -> None:
+    """Print how the product stands, what carries each body, and what keeps it in when the product is turned over."""
+    if report["stances"]:
+        least = min(report["stances"], key=lambda row: row["tip_deg"])
+        at = ", ".join(f"{name} = {value:.4g}" for name, value in least["at"].items()) or "rest"
+        stands = "stands" if all(row["stands"] for row in report["stances"]) else "does NOT stand"
+        terminal.say(
+            f"The product {stands} on a level floor; it tips over at {least['tip_deg']:.1f}° at the least, at {at} "
+            f"({counted_things(len(report['stances']), 'pose', 'poses')}, drivers held)."
+        )
+    for row in report["bodies"]:
+        on = [*row["rests_on"], *(f"joint {name}" for name in row["joints"])]
+        told = [f"carried by {', '.join(on)}" if row["carried"] and on else "carried" if row["carried"] else "NOT carried"]
+        if row["falls_out_turned_over"]:
+            told.append("falls out when turned over")
+        elif row["kept_by"]:
+            told.append(f"kept in by {row['kept_by']}")
+        ways = ", ".join(_way(way) for way in row["ways_out"])
+        told.append(f"without joints it leaves {ways}" if ways else "captive: no straight way out")
+        terminal.say(f"  {', '.join(row['parts'])}: {'; '.join(told)}")
+
+
 def print_order(report: Report, terminal: Terminal) -> None:
     """Print the steps of an order of assembly, each with its path."""
     for step in report["steps"]:

@@ -539,6 +539,15 @@ CODES: dict[str, Code] = {
         "Surfaces that form a joint at rest no longer form it elsewhere in its range.",
         "Lengthen the guide or the pin, or shorten the range.",
     ),
+    "W_NOT_CARRIED": Code(
+        "fit", "design", "Nothing carries a part against its weight.", "Put a surface under it, or give it a joint whose surfaces hold it."
+    ),
+    "W_TIPS_OVER": Code(
+        "fit",
+        "design",
+        "The product's centre of mass is not over the points on which it stands.",
+        "Widen the base, move mass over it, or shorten the travel.",
+    ),
     "W_JOINT_SHORT": Code(
         "fit", "design", "A slide has too little of its guide engaged at an end of its range.", "Lengthen the guide, or shorten the travel."
     ),

@@ -16,7 +16,7 @@ from scipy.sparse import csr_array
 
 from articad.arrays import BoolArray, FloatArray
 
-__all__ = ["FAR_RAD", "GROUND", "Touch", "far_mm", "room"]
+__all__ = ["FAR_RAD", "GROUND", "Touch", "far_mm", "room", "rows"]
 
 FAR_RAD: Final = 0.35  # a body that may turn by this much is not held
 GROUND: Final = -1  # the body that stands still
@@ -63,7 +63,7 @@ def room(touches: Sequence[Touch], held: BoolArray, centre: FloatArray) -> Float
     count = 1 + max(max(touch.first, touch.second) for touch in touches)
     centres = [centre, *(_middle(touches, body) for body in range(1, count))]
     bounds = np.concatenate([limits, np.tile(_OTHERS * np.array([far] * 3 + [FAR_RAD] * 3), count - 1)])
-    dense = np.concatenate([_rows(touch, centres) for touch in touches])
+    dense = np.concatenate([rows(touch, centres) for touch in touches])
     gaps = np.concatenate([touch.gaps for touch in touches])
     grazing = np.concatenate([np.full(len(touch.gaps), touch.grazing) for touch in touches])
     found = np.zeros((2, 6))
@@ -75,8 +75,8 @@ def room(touches: Sequence[Touch], held: BoolArray, centre: FloatArray) -> Float
             if column < 3:
                 against = sign * dense[:, column]
                 stops = (against <= 0) | (against >= grazing)
-            rows = csr_array(dense[stops])
-            result = linprog(goal, A_ub=rows, b_ub=gaps[stops], bounds=np.column_stack([-bounds, bounds]), method="highs")
+            left = csr_array(dense[stops])
+            result = linprog(goal, A_ub=left, b_ub=gaps[stops], bounds=np.column_stack([-bounds, bounds]), method="highs")
             found[place, column] = -result.fun if result.status == 0 else limits[column]
     return found
 
@@ -86,11 +86,11 @@ def _middle(touches: Sequence[Touch], body: int) -> FloatArray:
     return np.asarray(np.concatenate(points).mean(axis=0)) if points else np.zeros(3)  # nothing depends on a body without contacts
 
 
-def _rows(touch: Touch, centres: Sequence[FloatArray]) -> FloatArray:
+def rows(touch: Touch, centres: Sequence[FloatArray]) -> FloatArray:
     """Return the left sides of the inequalities of contacts, `(N, 6 bodies)`."""
-    rows = np.zeros((len(touch.points), 6 * len(centres)))
+    found = np.zeros((len(touch.points), 6 * len(centres)))
     for body, sign in ((touch.second, 1.0), (touch.first, -1.0)):
         if body != GROUND:
             arms = np.cross(touch.points - centres[body], touch.normals)
-            rows[:, 6 * body : 6 * body + 6] = sign * np.column_stack([touch.normals, arms])
-    return rows
+            found[:, 6 * body : 6 * body + 6] = sign * np.column_stack([touch.normals, arms])
+    return found
