@@ -503,7 +503,7 @@ CODES: dict[str, Code] = {
     "W_NOT_INSERTABLE": Code(
         "interference",
         "design",
-        "A part cannot be put in place in a straight line.",
+        "A part cannot be put in place by one or two straight moves.",
         "Open one side, split a part, or let it snap or rotate into place.",
     ),
     "W_NOT_CERTIFIED": Code(
