@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from articad.aliases import Json
-from articad.errors import ArticadError
 from articad.geometry.faces import faces_of
-from articad.papers import EXTRA
 from articad.papers.items import Item
 
 if TYPE_CHECKING:
@@ -24,7 +21,7 @@ __all__ = ["Board", "Cut", "Sheet", "boards_of", "cut_list_json", "nested"]
 _THICK_MM: Final = 60.0  # a board is at most this thick,
 _SHARE: Final = 0.25  # and at most this share of its width
 _FLAT: Final = 0.5  # share of length × width that each of its two faces covers
-_UNIT_MM: Final = 1e-3  # lengths are whole numbers of this while they are nested
+_SAME_MM: Final = 1e-3  # differences of places that are rounding
 
 
 @dataclass(frozen=True)
@@ -92,9 +89,9 @@ def boards_of(assembly: Assembly, items: Sequence[Item]) -> tuple[Board, ...]:
         low, high = part.mesh.bounds
         areas = [0.0, 0.0]
         for face in faces_of(part.mesh):
-            if face.kind == "plane" and abs(abs(face.axis[flat]) - 1.0) < _UNIT_MM:
+            if face.kind == "plane" and abs(abs(face.axis[flat]) - 1.0) < _SAME_MM:
                 for end, at in enumerate((low[flat], high[flat])):
-                    if abs(face.point[flat] - at) < _UNIT_MM:
+                    if abs(face.point[flat] - at) < _SAME_MM:
                         edges = face.corners[:, 1:] - face.corners[:, :1]
                         areas[end] += 0.5 * float(np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1).sum())
         if min(areas) >= _FLAT * size[1] * size[2]:
@@ -115,14 +112,7 @@ def nested(
 
     Returns:
         The sheets, and the boards that are larger than a sheet.
-
-    Raises:
-        ArticadError: If rectpack is not installed.
     """
-    if find_spec("rectpack") is None:
-        raise ArticadError(f"A cut list needs rectpack, which is not installed. Run: {EXTRA}.", stage="export")
-    import rectpack  # noqa: PLC0415 - an extra
-
     stocks: defaultdict[tuple[str, float], list[Board]] = defaultdict(list)
     large = []
     for board in boards:
@@ -133,17 +123,63 @@ def nested(
             large.append(board)
     sheets = []
     for (material, thickness), kind in sorted(stocks.items(), key=lambda entry: entry[0]):
-        packer = rectpack.newPacker(rotation=turn, pack_algo=rectpack.GuillotineBssfSas)
-        packer.add_bin(*(_whole(side + kerf_mm) for side in size_mm), count=sum(board.item.quantity for board in kind))
-        for index, board in enumerate(kind):
+        open_ones: list[_Open] = []
+        for board in sorted(kind, key=lambda one: (-one.length_mm * one.width_mm, one.item.name)):
             for _ in range(board.item.quantity):
-                packer.add_rect(_whole(board.length_mm + kerf_mm), _whole(board.width_mm + kerf_mm), rid=index)
-        packer.pack()
-        for used in packer:
-            cuts = sorted((r.x, r.y, r.width, r.height, r.rid) for r in used)
-            placed = (Cut(kind[n], x * _UNIT_MM, y * _UNIT_MM, w * _UNIT_MM - kerf_mm, h * _UNIT_MM - kerf_mm) for x, y, w, h, n in cuts)
-            sheets.append(Sheet(material or None, thickness, size_mm, tuple(placed)))
+                if not any(sheet.takes(board, kerf_mm, turn=turn) for sheet in open_ones):
+                    open_ones.append(_Open.new(size_mm, kerf_mm))
+                    open_ones[-1].takes(board, kerf_mm, turn=turn)
+        sheets += [
+            Sheet(material or None, thickness, size_mm, tuple(sorted(sheet.cuts, key=lambda cut: (cut.x, cut.y)))) for sheet in open_ones
+        ]
     return tuple(sheets), tuple(large)
+
+
+class _Free(NamedTuple):
+    """A rectangle of a sheet that is still free, with a kerf at its right and upper edge [mm]."""
+
+    x: float
+    y: float
+    along: float
+    across: float
+
+
+@dataclass
+class _Open:
+    """A sheet that is being filled.
+
+    Each blank goes into the corner of the free rectangle that it fits most closely by its shorter rest, and a straight cut divides what remains
+    (guillotine algorithm, best short side fit, shorter axis split: J. Jylänki, A Thousand Ways to Pack the Bin, 2010).
+    """
+
+    free: list[_Free]
+    cuts: list[Cut]
+
+    @classmethod
+    def new(cls, size_mm: tuple[float, float], kerf_mm: float) -> _Open:
+        return cls([_Free(0.0, 0.0, size_mm[0] + kerf_mm, size_mm[1] + kerf_mm)], [])
+
+    def takes(self, board: Board, kerf_mm: float, *, turn: bool) -> bool:
+        """Place a blank if there is room."""
+        lies = [(board.length_mm, board.width_mm), *([(board.width_mm, board.length_mm)] if turn else [])]
+        rests = [
+            (min(room.along - along, room.across - across), at, along, across)
+            for at, room in enumerate(self.free)
+            for along, across in ((a + kerf_mm, b + kerf_mm) for a, b in lies)
+            if along <= room.along + _SAME_MM and across <= room.across + _SAME_MM
+        ]
+        if not rests:
+            return False
+        _, at, along, across = min(rests)
+        room = self.free.pop(at)
+        self.cuts.append(Cut(board, room.x, room.y, along - kerf_mm, across - kerf_mm))
+        beside, above = room.along - along, room.across - across
+        through = beside < above  # which of the two cuts runs from edge to edge
+        self.free += [
+            _Free(room.x + along, room.y, beside, across if through else room.across),
+            _Free(room.x, room.y + across, room.along if through else along, above),
+        ]
+        return True
 
 
 def cut_list_json(boards: Sequence[Board], sheets: Sequence[Sheet], large: Sequence[Board], *, kerf_mm: float) -> Json:
@@ -170,7 +206,3 @@ def cut_list_json(boards: Sequence[Board], sheets: Sequence[Sheet], large: Seque
         ],
         "too_large": [board.item.number for board in large],
     }  # fmt: skip
-
-
-def _whole(length: float) -> int:
-    return round(length / _UNIT_MM)

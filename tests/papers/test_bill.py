@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import zipfile
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
 from articad.kinematics import declare
 from articad.papers.bill import COLUMNS, bill_json, bill_xlsx, rows_of, written_csv
-from articad.papers.boards import Board, boards_of, nested
+from articad.papers.boards import Board, Cut, boards_of, nested
 from articad.papers.items import items_of
 from tests.assemblies import block, frame
 
@@ -89,8 +90,20 @@ def test_csv_and_xlsx_hold_the_same_cells_and_compute_nothing_that_a_name_says()
     assert [values[f"C{row}"] for row in range(2, 6)] == [float(row[2]) for row in table[1:]]
 
 
+def is_cut_from_edge_to_edge(cuts: Sequence[Cut]) -> bool:
+    """Whether straight cuts, each from edge to edge of what is left, separate all blanks."""
+    if len(cuts) < 2:
+        return True
+    for low, high in ((lambda cut: cut.x, lambda cut: cut.x + cut.along), (lambda cut: cut.y, lambda cut: cut.y + cut.across)):
+        for place in sorted({high(cut) for cut in cuts}):
+            before = [cut for cut in cuts if high(cut) <= place + 1e-9]
+            after = [cut for cut in cuts if low(cut) >= place - 1e-9]
+            if before and after and len(before) + len(after) == len(cuts):
+                return is_cut_from_edge_to_edge(before) and is_cut_from_edge_to_edge(after)
+    return False
+
+
 def test_boards_lie_on_sheets_without_overlap_one_kerf_apart_and_along_the_grain() -> None:
-    pytest.importorskip("rectpack")
     assembly = shelf()
     boards = boards_of(assembly, items_of(assembly))
     assert [(board.item.name, board.length_mm, board.width_mm, board.thickness_mm) for board in boards] == [
@@ -112,6 +125,7 @@ def test_boards_lie_on_sheets_without_overlap_one_kerf_apart_and_along_the_grain
                     max(cut.y - other.y - other.across, other.y - cut.y - cut.across),
                 )
                 assert max(gaps) >= 4.0 - 1e-9
+        assert is_cut_from_edge_to_edge(sheet.cuts)
     assert [board.item.name for board in nested(boards, (850.0, 500.0), kerf_mm=4.0)[1]] == ["side"]
     assert not nested(boards, (410.0, 910.0), kerf_mm=4.0, turn=True)[1]
 
