@@ -94,10 +94,10 @@ def is_cut_from_edge_to_edge(cuts: Sequence[Cut]) -> bool:
     """Whether straight cuts, each from edge to edge of what is left, separate all blanks."""
     if len(cuts) < 2:
         return True
-    for low, high in ((lambda cut: cut.x, lambda cut: cut.x + cut.along), (lambda cut: cut.y, lambda cut: cut.y + cut.across)):
-        for place in sorted({high(cut) for cut in cuts}):
-            before = [cut for cut in cuts if high(cut) <= place + 1e-9]
-            after = [cut for cut in cuts if low(cut) >= place - 1e-9]
+    for ends in ([(cut.x, cut.x + cut.along) for cut in cuts], [(cut.y, cut.y + cut.across) for cut in cuts]):
+        for place in sorted({high for _, high in ends}):
+            before = [cut for cut, (_, high) in zip(cuts, ends, strict=True) if high <= place + 1e-9]
+            after = [cut for cut, (low, _) in zip(cuts, ends, strict=True) if low >= place - 1e-9]
             if before and after and len(before) + len(after) == len(cuts):
                 return is_cut_from_edge_to_edge(before) and is_cut_from_edge_to_edge(after)
     return False
