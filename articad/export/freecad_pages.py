@@ -6,6 +6,7 @@ corner. Views follow first-angle projection (ISO 5456-2): the top view is below 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 SCALES = (50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)  # ISO 5455
 A4, A3 = (297.0, 210.0), (420.0, 297.0)
 _MARGIN, _LEFT, _GAP, _BLOCK = 10.0, 42.0, 32.0, (122.0, 36.0)  # frame; space for dimensions; between views; title block
+_LETTER, _DIGITS = 2.1, 7  # mean width of a letter of a dimension [mm]; letters of a number with its sign
+_ROUND = re.compile(r"radius|diameter")
 Boxes = dict[str, NDArray[np.float64]]
 _NAMESPACE = "https://www.freecad.org/wiki/index.php?title=Svg_Namespace"  # of the texts that FreeCAD can edit
 _AXES = {  # view -> what points right and up on the page
@@ -58,17 +61,19 @@ def _page(assembly: Assembly, row: Json, sheet: str) -> Json:
     if part.solid is None:
         raise AssertionError("a page shows a solid")
     width, depth, height = (float(size) for size in part.solid.bbox[1] - part.solid.bbox[0])
-    room = (A4[0] - 2 * _MARGIN - _LEFT - _GAP - 12.0, A4[1] - 2 * _MARGIN - _BLOCK[1] - _GAP - 10.0)
+    labels = max((len(item["name"]) + _DIGITS for item in row["dimensions"] if _ROUND.search(item["name"])), default=0)
+    gap = max(_GAP, 16.0 + _LETTER * labels)  # labels of circles are at the right of their views
+    room = (A4[0] - 2 * _MARGIN - _LEFT - gap - 12.0, A4[1] - 2 * _MARGIN - _BLOCK[1] - _GAP - 10.0)
     scale = next((s for s in SCALES if (width + depth) * s <= room[0] and (height + depth) * s <= room[1]), SCALES[-1])
     w, d, h = width * scale, depth * scale, height * scale
     x, y = _MARGIN + _LEFT + w / 2, A4[1] - _MARGIN - 8.0 - h / 2
-    aside, below = x + w / 2 + _GAP + d / 2, y - h / 2 - _GAP + 4.0 - d / 2
+    aside, below = x + w / 2 + gap + d / 2, y - h / 2 - _GAP + 4.0 - d / 2
     places = {"front": (x, y), "left": (aside, y), "top": (x, below)}
-    free = A4[0] - _MARGIN - (x + w / 2) - 10.0
+    free = A4[0] - _MARGIN - (x + w / 2) - gap
     across, tall = 0.7071 * (width + depth), 0.8165 * height + 0.4082 * (width + depth)
     small = next((s for s in SCALES if s <= scale and across * s <= free and tall * s <= max(d, 30.0)), SCALES[-1])
     views = [{"name": name, "x": at[0], "y": at[1], "scale": scale, **_seen(name)} for name, at in places.items()]
-    seat = (x + w / 2 + 10.0 + free / 2, max(below, _MARGIN + _BLOCK[1] + 4.0 + tall * small / 2))
+    seat = (x + w / 2 + gap + free / 2, max(below, _MARGIN + _BLOCK[1] + 4.0 + tall * small / 2))
     views.append({"name": "iso", "x": seat[0], "y": seat[1], "scale": small, "direction": [-1, -1, 1], "right": [1, -1, 0]})
     overall = " × ".join(f"{size:.5g}" for size in (width, depth, height))
     fields = _fields(assembly, row["name"], sheet, scale) | {"Material": part.material or "-", "Mass": _mass(part), "Overall": overall}
@@ -79,6 +84,7 @@ def _page(assembly: Assembly, row: Json, sheet: str) -> Json:
         "template": _template(A4, fields),
         "views": views,
         "size": [width, depth, height],
+        "letter": _LETTER,
         "dimensions": {item["name"]: item["value"] for item in row["dimensions"]},
         "note": ["Dimensions of the plan:", *_columns(told, 3)] if told else [],
         "note_at": [_MARGIN + 76.0, _MARGIN + 18.0],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +14,8 @@ import pytest
 import articad as ac
 from articad.export.freecad import write_freecad
 from articad.kernels import freecad_install
-from articad.kernels.freecad_install import FreeCAD
+from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
+from articad.runs.pull import compared, pull
 from tests.freecad import opened
 
 pytestmark = [pytest.mark.freecad, opened.needs_freecad]
@@ -133,6 +135,27 @@ def test_a_part_that_cannot_be_traced_is_frozen_with_the_reason(tmp_path: Path) 
     assert any("(frozen" in label for label in look["labels"].values())
     (loss,) = [loss for loss in losses if loss.where == "parts.it"]
     assert "line 9: Ellipse is not recorded" in loss.kept
+
+
+@pytest.mark.parametrize("split", [False, True], ids=["one", "split"])
+@pytest.mark.parametrize("freecad", FREECADS, ids=["1.0", "next"])
+def test_an_edited_parameter_is_pulled_and_an_edited_feature_is_named(freecad: Callable[[], FreeCAD], split: bool, tmp_path: Path) -> None:
+    text = HEAD + "\n".join((BASES[0], STEPS[0])) + END
+    bundle = write_freecad(ac.build(plan(), _with(text, tmp_path)), trees=True, split=split)
+    assert not bundle.findings, bundle.findings
+    main = bundle.write(tmp_path / "document")[0]
+    (main.parent / "job.json").write_text(json.dumps({"file": main.name}))
+    program = Path(__file__).with_name("tree_edits_by_freecad.py")
+    ended = freecad().run(program, folder=main.parent, limits=FreeCADLimits(seconds=300.0))
+    assert (main.parent / "done.json").is_file(), ended.said
+    cylinder = json.loads((main.parent / "done.json").read_text())
+    pulled = pull(plan(), main)
+    assert pulled.changes == {"parameters.a.value": 43.0}
+    named = pulled.findings.of("W_FREECAD_EDIT")
+    assert any("Radius" in finding.message and "7" in finding.message for finding in named)
+    assert all(finding.where == f"objects.{cylinder}" for finding in named), list(map(str, named))
+    (other,) = compared(ac.build(pulled.plan, tmp_path), main)  # the plan has the script's radius
+    assert other.where == "parts.it"
 
 
 @pytest.mark.soak

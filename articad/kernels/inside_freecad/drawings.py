@@ -28,6 +28,7 @@ _ROW, _COLUMN, _FIRST = 7.0, 9.0, 9.0  # mm between dimensions, and to the first
 _CIRCLES = {"top": (0, 0, 1), "front": (0, 1, 0), "left": (1, 0, 0)}  # view -> axis of the circles that it shows as such
 _COARSE = 0.5  # mm
 _MOST = 12  # dimensions of a page
+_ASIDE = 0.01  # mm beside an edge, where a ray towards the eye starts
 _WIDTHS = (45, 130, 60, 110, 80)  # pixels of the columns of a parts list
 _CIRCLE = "Part::GeomCircle"
 
@@ -151,7 +152,10 @@ class _Drawing:
         scale = form["views"][0]["scale"]
         half = {row["name"]: self._half(row, form["size"], scale) for row in form["views"] if "up" in row}
         used: dict[tuple[str, str], int] = {}
-        for name, kind, elements, value, text in self._dimensions(form, source.Shape):
+        shape, ups = source.Shape, {row["name"]: App.Vector(*row["up"]) for row in form["views"] if "up" in row}
+        for name, kind, elements, value, text in sorted(self._dimensions(form, shape), key=lambda row: _order(shape, row, ups)):
+            if len(elements) == 1 and not _visible(shape, elements[0], views[name].Direction):
+                views[name].HardHidden = True  # an edge that is measured is drawn: dashed if it is behind others
             item = self.document.addObject("TechDraw::DrawViewDimension", f"Dimension_{form['part']}")
             item.Type = kind
             item.MeasureType = "Projected" if kind.startswith("Distance") else "True"
@@ -159,6 +163,7 @@ class _Drawing:
             item.References3D = [(source, element) for element in elements]
             sign = {"Radius": "R", "Diameter": "\u2300"}.get(kind, "")
             item.FormatSpec = f"{sign}%.2w {text}".strip() if sign else f"{text} %.2w".strip()
+            half_label = 0.5 * form["letter"] * len(f"{sign}{value:.2f} {text}")
             page.addView(item)
             side = "circle" if not kind.startswith("Distance") else "up" if kind == "DistanceY" else "across"
             place = used[name, side] = used.get((name, side), -1) + 1
@@ -166,7 +171,7 @@ class _Drawing:
             item.X, item.Y = {
                 "across": (0.0, -up - _FIRST - _ROW * place),
                 "up": (-across - _FIRST - _COLUMN * place, 0.0),
-                "circle": (across + 8.0, up - 4.0 - _ROW * place),
+                "circle": (across + _FIRST + half_label, up - 4.0 - _COLUMN * place),
             }[side]
             item.addProperty("App::PropertyFloat", "ArticadValue", "articad", "Its value when articad wrote the document")
             item.ArticadValue = value
@@ -203,7 +208,11 @@ class _Drawing:
             (view, kind, _ends(shape, axis, low[axis], high[axis]), high[axis] - low[axis])
             for axis, view, kind in ((0, "front", "DistanceX"), (2, "front", "DistanceY"), (1, "top", "DistanceY"))
         ]
-        yield from named_sizes(form["dimensions"], overall, list(_circles(shape)), list(_straight(shape)), _MOST)
+        eyes = {row["name"]: App.Vector(*row["direction"]) for row in form["views"]}
+        circles, edges = list(_circles(shape)), list(_straight(shape))
+        yield from named_sizes(
+            form["dimensions"], overall, circles, edges, _MOST, shown=lambda view, circle: _visible(shape, circle, eyes[view])
+        )
 
     # ------------------------------------------------------------------ the exploded view
 
@@ -249,6 +258,29 @@ def _ends(shape: Any, axis: int, low: float, high: float) -> tuple[str, str] | N
             return None
         found.append(min(at, key=lambda row: (round(sum(row[1]) - row[1][axis], 6), row[0]))[0])
     return f"Vertex{found[0]}", f"Vertex{found[1]}"
+
+
+def _order(shape: Any, row: tuple[str, str, list[str], float, str], ups: dict[str, Any]) -> float:
+    """Return what dimensions are sorted by: circles from top to bottom, so that their leaders do not cross; lengths, the shortest inside."""
+    view, kind, elements, value, _ = row
+    if kind.startswith("Distance"):
+        return value
+    return -float(shape.getElement(elements[0]).Curve.Center * ups[view])
+
+
+def _visible(shape: Any, element: str, eye: Any) -> bool:
+    """Return whether a view shows an edge: at most points along it, a ray towards the eye that starts just beside it meets nothing."""
+    edge, away = shape.getElement(element), App.Vector(eye).normalize()
+    right = away.cross(App.Vector(0, 0, 1) if abs(away.z) < 0.5 else App.Vector(1, 0, 0)).normalize()
+    up, far = away.cross(right), shape.BoundBox.DiagonalLength
+    sides = [right * math.cos(turn * math.pi / 4) + up * math.sin(turn * math.pi / 4) for turn in range(8)]
+    low, high = edge.ParameterRange
+    seen = 0
+    for part in (0.2, 0.5, 0.8):
+        point = edge.valueAt(low + part * (high - low))
+        starts = (point + (side + away) * _ASIDE for side in sides)
+        seen += any(shape.distToShape(Part.makeLine(start, start + away * far))[0] > 0.01 * _ASIDE for start in starts)
+    return seen >= 2
 
 
 def _circles(shape: Any) -> Iterator[tuple[str, str, float]]:
