@@ -404,8 +404,11 @@ class _Model:
     def _joint(self, item: FreeCADObject, kind: JointType, parent: tuple[str, str, SE3], child: tuple[str, str, SE3]) -> Joint:
         D = (self.poses[parent[0]] @ parent[2]).inverse() @ self.poses[child[0]] @ child[2]
         mate = Mate.ALIGNED if D.rotation[2, 2] >= 0 else Mate.OPPOSED
-        ends = self._ends(item, kind)
-        rest = _coordinates(D @ (FLIP if mate is Mate.OPPOSED else IDENTITY), kind)
+        ends, seat = self._ends(item, kind), child[2]
+        turned = D @ (FLIP if mate is Mate.OPPOSED else IDENTITY)
+        if kind is JointType.FIXED and turned.rotation[0, 0] < 0.0:  # FreeCAD's solver also holds fixed frames half a turn apart about z
+            seat = seat @ SE3.from_quaternion([0.0, 0.0, 1.0, 0.0])
+        rest = _coordinates(turned, kind)
         if ends:
             rest = tuple(_wound(value, *end) if axis == "Angle" else value for value, (axis, end) in zip(rest, ends, strict=True))
         return Joint(
@@ -416,7 +419,7 @@ class _Model:
             parent_connector=parent[1],
             child_connector=child[1],
             T_parent_connector=parent[2],
-            T_child_connector=child[2],
+            T_child_connector=seat,
             limits=_limits(ends, rest),
             rest=rest,
             mate=mate,

@@ -21,7 +21,9 @@ from articad.export.urdf import write_urdf
 from articad.importers.freecad import read_freecad
 from articad.importers.urdf import read_urdf
 from articad.kernels import freecad_install
+from articad.kernels.freecad_file import packed
 from tests.freecad import opened
+from tests.freecad.test_split import two_boxes
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -242,3 +244,20 @@ def test_freecads_own_example_is_read_as_freecad_has_it(tmp_path: Path) -> None:
 def named(label: str) -> str:
     """Return a label of letters and digits as a name of articad's."""
     return re.sub(r"[^a-z0-9]+", "_", label.lower()).strip("_")
+
+
+@pytest.mark.parametrize("axis", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
+def test_a_fixed_joint_that_freecad_holds_half_a_turn_apart_stays_so(axis: tuple[int, int, int], tmp_path: Path) -> None:
+    """FreeCAD's solver returns 0 for each half turn between the frames of a fixed joint, and moves nothing."""
+    path = ac.Bundle(write_freecad_alone(two_boxes()).files).write(tmp_path)[0]
+    with zipfile.ZipFile(path) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    seat = two_boxes().parts["two"].connectors["end"].frame
+    turn = SE3.from_rotation(Rotation.from_rotvec(np.pi * np.array(axis)).as_matrix())
+    stands = seat @ turn @ seat.inverse()
+    document = etree.fromstring(files["Document.xml"])
+    (placement,) = document.xpath("//Object[@name='two']//Property[@name='Placement']/PropertyPlacement")
+    for key, number in zip(("Px", "Py", "Pz", "Q0", "Q1", "Q2", "Q3"), stands.data, strict=True):
+        placement.set(key, repr(float(number)))
+    path.write_bytes(packed(files | {"Document.xml": etree.tostring(document)}))
+    assert read_freecad(path, metadata=False).at()["two"].allclose(stands, mm=1e-9, rad=1e-9)
