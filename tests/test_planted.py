@@ -32,6 +32,8 @@ certify run --budget 1
 verify-certificate run/certificate.json
 export run --to urdf,mjcf,step
 bom run --cuts
+order run
+drawing run --to svg
 audit run/export/urdf/product.urdf
 audit run/export/mjcf/product.xml
 sim run/export/urdf/product.urdf
