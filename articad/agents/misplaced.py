@@ -30,6 +30,7 @@ __all__ = ["Misplaced", "misplaced"]
 _AXES: Final = "xyz"
 _AT_ONCE: Final = 3  # parts that are tried
 _TOLD: Final = 2  # motions that a hint states
+_LEAST_MM: Final = 1.0  # a smaller shift is a matter of fits
 _SHIFTS: Final = 2  # distances that are tried, the shallowest overlaps
 
 
@@ -82,7 +83,8 @@ def misplaced(
     known = {pair.parts: pair for pair in pairs}
     found = []
     for source in suspects:
-        depths = sorted({round(abs(one.value), 3) for one in faults if one.value and source in _of(sources, one)})
+        values = {round(abs(one.value), 3) for one in faults if one.value and source in _of(sources, one)}
+        depths = sorted(value for value in values if value >= _LEAST_MM)
         motions = _enlargements() if scaled else _motions(depths[:_SHIFTS])
         how = _healing(assembly, scene, sources, source, motions, known)
         found += [Misplaced(source, " or ".join(how), counts[source])] if how else []

@@ -120,8 +120,9 @@ def _sources(resolved: ResolvedPlan) -> dict[str, str]:
 
 
 def _is_open(finding: Finding, resolved: ResolvedPlan, departed: Container[str]) -> bool:
-    """Return whether a finding is an error about two parts of which neither is known to depart."""
-    is_between = finding.severity == "error" and finding.code in _CODES and len(finding.parts) == 2
+    """Return whether a finding is an error about two parts at rest of which neither is known to depart."""
+    at_rest = finding.severity == "error" and finding.code in _CODES - {"E_MOTION_COLLISION"}
+    is_between = at_rest and len(finding.parts) == 2
     return is_between and not any(source_of(name, resolved) in departed for name in finding.parts if name in resolved.parts)
 
 
