@@ -10,7 +10,8 @@ import pytest
 
 from articad.support.stance import Stance, stance
 
-WITHIN = math.radians(2.0)
+WITHIN = math.radians(1.0)
+SURFACE = 'friction="8 0 0" solref="0.004 1"'  # with MuJoCo's own contacts, which give way, the stools fall 2° earlier
 Boxes = list[tuple[np.ndarray, np.ndarray]]  # middle and half sides [mm]
 
 
@@ -38,13 +39,13 @@ def stands(boxes: Boxes) -> Stance:
 def topples(boxes: Boxes, tilt: float, towards: np.ndarray) -> bool:
     """Return whether the boxes, as one body, fall over in MuJoCo with gravity tilted by an angle towards a direction."""
     geoms = "".join(
-        f'<geom type="box" pos="{" ".join(map(str, middle / 1000))}" size="{" ".join(map(str, half / 1000))}" density="700" friction="8 0 0"/>'
+        f'<geom type="box" pos="{" ".join(map(str, middle / 1000))}" size="{" ".join(map(str, half / 1000))}" density="700" {SURFACE}/>'
         for middle, half in boxes
     )
     pull = 9.81 * np.array([*(math.sin(tilt) * towards), -math.cos(tilt)])
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><option timestep="0.001" gravity="{" ".join(map(str, pull))}" cone="elliptic" impratio="10"/>'
-        f'<worldbody><geom type="plane" size="9 9 1" friction="8 0 0"/><body><freejoint/>{geoms}</body></worldbody></mujoco>'
+        f'<worldbody><geom type="plane" size="9 9 1" {SURFACE}/><body><freejoint/>{geoms}</body></worldbody></mujoco>'
     )
     data = mujoco.MjData(model)
     for _ in range(2000):
@@ -54,7 +55,8 @@ def topples(boxes: Boxes, tilt: float, towards: np.ndarray) -> bool:
     return False
 
 
-def holds(seed: int) -> None:
+@pytest.mark.parametrize("seed", range(25))
+def test_a_stool_tips_over_in_mujoco_at_the_angle_that_is_stated(seed: int) -> None:
     boxes = stool(seed)
     found = stands(boxes)
     assert found.stands
@@ -63,17 +65,6 @@ def holds(seed: int) -> None:
         assert tip >= found.tip - 1e-9
         assert topples(boxes, tip + WITHIN, towards)
         assert not topples(boxes, tip - WITHIN, towards)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_a_stool_tips_over_in_mujoco_at_the_angle_that_is_stated(seed: int) -> None:
-    holds(seed)
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("seed", range(5, 25))
-def test_twenty_more_stools_tip_over_in_mujoco_at_the_angle_that_is_stated(seed: int) -> None:
-    holds(seed)
 
 
 def test_a_block_tips_over_its_nearest_edge() -> None:
