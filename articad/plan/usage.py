@@ -296,7 +296,7 @@ def _dimensions(draft: Draft) -> list[Finding]:
         if SIZE.search(name) and value < -NOISE_MM
     ]
     for length, part, name in lengths:
-        least = LEAST_CLEARANCE_MM if CLEARANCE.search(name) else THINNEST_MM
+        least = LEAST_CLEARANCE_MM if CLEARANCE.search(name) or "offset" in name else THINNEST_MM
         if NOISE_MM < length < least:
             message = f"Dimension {name!r} of {part} is {length:.6g} mm."
             hint = f"Lengths are millimetres: were metres given? Then it is {length * 1000.0:.6g}; or make it at least {least:g} mm."

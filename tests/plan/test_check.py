@@ -1039,3 +1039,13 @@ def test_missing_freedoms_name_the_fixed_joints_at_axes() -> None:
     finding = only(check(plan), "E_DOF_MISMATCH")
     assert finding.hint.endswith("These joints are fixed although their connectors suggest a motion: slide_lower, slide_upper.")
     assert finding.parts == ("cabinet", "drawer_lower", "drawer_upper")
+
+
+def test_an_offset_may_be_as_small_as_a_clearance() -> None:
+    def codes(name: str) -> set[str]:
+        return set(
+            check(chest_with(lambda p: part(p, "box").update(dimensions={"width": "width", "height": 200, "inset": 20, name: 0.006}))).codes
+        )
+
+    assert "W_SCALE" in codes("wall")
+    assert "W_SCALE" not in codes("wall_offset")
