@@ -40,12 +40,10 @@ class Misplaced(NamedTuple):
     Attributes:
         part: The part that has the script.
         how: What brings the shape to its place: "mirrored at x = 0".
-        healed: Faults that are gone then.
     """
 
     part: str
     how: str
-    healed: int
 
 
 class _Motion(NamedTuple):
@@ -80,16 +78,16 @@ def misplaced(
             counts[source] = counts.get(source, 0) + 1
     scaled = [source for source in sorted(counts) if source in doubted]
     suspects = scaled or sorted(counts, key=lambda source: (-counts[source], source))[:_AT_ONCE]
-    known = {pair.parts: pair for pair in pairs}
+    known, reached = {pair.parts: pair for pair in pairs}, followed(assembly.mechanism)
     found = []
     for source in suspects:
         values = {round(abs(one.value), 3) for one in faults if one.value and source in _of(sources, one)}
         depths = sorted(value for value in values if value >= _LEAST_MM)
         motions = _enlargements() if scaled else _motions(depths[:_SHIFTS])
-        how = _healing(assembly, scene, sources, source, motions, known)
-        found += [Misplaced(source, " or ".join(how), counts[source])] if how else []
-    most = max((one.healed for one in found), default=0)
-    best = [one for one in found if one.healed == most]
+        how = _healing(assembly, scene, sources, source, motions, known, reached)
+        found += [Misplaced(source, " or ".join(how))] if how else []
+    most = max((counts[one.part] for one in found), default=0)
+    best = [one for one in found if counts[one.part] == most]
     return best[0] if len(best) == 1 else None
 
 
@@ -104,32 +102,33 @@ def _healing(
     source: str,
     motions: Iterable[_Motion],
     known: Mapping[tuple[str, str], PairCheck],
+    reached: Mapping[str, tuple[float, float]],
 ) -> list[str]:
-    """Return how a part's shape can be moved so that its faults are gone."""
+    """Return how a part's shape can be moved so that its faults are gone; `reached` are the ranges of coordinates of linkages."""
     copies = frozenset(name for name in scene.meshes if sources.get(name) == source)
     joints = [joint.name for joint in assembly.joints if copies & {joint.parent, joint.child}]
     others = {names: pair for names, pair in known.items() if copies.isdisjoint(names)}
     poses = Poses(assembly.mechanism.parts, assembly.mechanism.at_rest)
-    loose = _loose(assembly, scene, poses, joints)
+    fits = [name for name in joints if name in assembly.fits]
+
+    def loose(scene: Scene) -> set[tuple[str, str]]:
+        """Return the findings about joints that surfaces do not make, by code and place."""
+        made = check_joints(scene, poses, reached=reached, joints=joints)
+        return {(finding.code, finding.where) for finding in made.findings}
+
+    before = loose(scene)
     healing: list[str] = []
     for motion in motions:
         moved = replace(scene, meshes=dict(scene.meshes) | {name: _moved(assembly, scene, source, name, motion) for name in copies})
         if check_scene(moved, poses, over="rest", ground=assembly.ground, known=others).findings.errors:
             continue
-        fits = [name for name in joints if name in assembly.fits]
-        if fits and not check_fits(moved, lambda: followed(assembly.mechanism), joints=fits).findings.ok:
+        if fits and not check_fits(moved, reached, joints=fits).findings.ok:
             continue
-        if _loose(assembly, moved, poses, joints) <= loose:
+        if loose(moved) <= before:
             healing.append(motion.how)
         if len(healing) == _TOLD:
             break
     return healing
-
-
-def _loose(assembly: Assembly, scene: Scene, poses: Poses, joints: Sequence[str]) -> set[tuple[str, str]]:
-    """Return the findings about joints that surfaces do not make, by code and place."""
-    made = check_joints(scene, poses, reached=followed(assembly.mechanism), joints=joints)
-    return {(finding.code, finding.where) for finding in made.findings}
 
 
 def _motions(depths: Iterable[float]) -> Iterator[_Motion]:

@@ -41,7 +41,7 @@ def _face_points(solid: Solid) -> tuple[FloatArray, FloatArray]:
     """Return the centres of the faces about the centre of volume `(F, 3)`, and what tells them apart `(F, 4)`: kind, radius, side, area."""
     centres, marks = [], []
     for face in faces_of(solid.mesh):
-        areas = 0.5 * np.linalg.norm(np.cross(face.corners[:, 1] - face.corners[:, 0], face.corners[:, 2] - face.corners[:, 0]), axis=1)
+        areas = 0.5 * np.linalg.norm(face.normals_of_twice_area, axis=1)
         centres.append((areas[:, None] * face.corners.mean(axis=1)).sum(axis=0) / max(float(areas.sum()), 1e-300))
         marks.append([("plane", "cylinder", "sphere", "other").index(face.kind) * 1e3, face.radius, 1e3 * face.hollow, float(areas.sum())])
     return np.array(centres) - solid.com, np.array(marks)

@@ -54,6 +54,11 @@ class Face:
     off: float
     corners: FloatArray
 
+    @property
+    def normals_of_twice_area(self) -> FloatArray:
+        """Outward normals of its triangles, as long as twice their areas, `(T, 3)` [mm²]."""
+        return _summed(self.corners)
+
     def moved(self, T: FloatArray) -> Face:
         """Return the face moved by a rigid motion `T (4, 4)`."""
         R, t = T[:3, :3], T[:3, 3]

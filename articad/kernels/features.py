@@ -95,7 +95,7 @@ def _is_round(face: Face) -> bool:
 
 def _goes_round(face: Face) -> bool:
     """Return whether a cylinder is closed: its normals cancel, those of a fillet do not."""
-    normals = np.cross(face.corners[:, 1] - face.corners[:, 0], face.corners[:, 2] - face.corners[:, 0])
+    normals = face.normals_of_twice_area
     return float(np.linalg.norm(normals.sum(axis=0))) < _CLOSED * float(np.linalg.norm(normals, axis=1).sum())
 
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from articad.errors import ArticadError, KernelError, ReadError
+from articad.errors import ArticadError, KernelError
 from articad.findings import Findings
 from articad.kernels.contract import drift_findings
 from articad.kernels.kernel import PartKernel
@@ -107,7 +107,7 @@ def _heals(slip: _Slip, resolved: ResolvedPlan, name: str, script: bytes, kernel
                 inspect=lambda connectors, bbox: drift_findings(target, told, connectors, bbox),
             )
             return built.findings.ok
-    except (ArticadError, ReadError, ValueError):
+    except (ArticadError, ValueError):
         return False
 
 

@@ -92,8 +92,7 @@ def boards_of(assembly: Assembly, items: Sequence[Item]) -> tuple[Board, ...]:
             if face.kind == "plane" and abs(abs(face.axis[flat]) - 1.0) < _SAME_MM:
                 for end, at in enumerate((low[flat], high[flat])):
                     if abs(face.point[flat] - at) < _SAME_MM:
-                        edges = face.corners[:, 1:] - face.corners[:, :1]
-                        areas[end] += 0.5 * float(np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1).sum())
+                        areas[end] += 0.5 * float(np.linalg.norm(face.normals_of_twice_area, axis=1).sum())
         if min(areas) >= _FLAT * size[1] * size[2]:
             found.append(Board(item, size[2], size[1], size[0]))
     return tuple(found)

@@ -143,7 +143,7 @@ def _one_cylinder(a: Face, b: Face) -> bool:
 def _hole(group: list[Face], mesh: TriMesh) -> Hole | None:
     """Return the cylinder of some faces, if it is whole."""
     corners = np.concatenate([face.corners for face in group])
-    twice = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    twice = np.concatenate([face.normals_of_twice_area for face in group])
     if np.linalg.norm(twice.sum(axis=0)) > _CLOSED * np.linalg.norm(twice, axis=1).sum():
         return None
     axis, point = group[0].axis, group[0].point

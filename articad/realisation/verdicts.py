@@ -26,7 +26,7 @@ from articad.realisation.contacts import FaceReach, Pair, pairs
 from articad.realisation.room import FAR_RAD, GROUND, Touch, far_mm, room
 from articad.realisation.sides import PartFace, Sides, sides
 
-__all__ = ["LEAST_SHARE", "FreeWay", "JointCheck", "JointVerdict", "Realisation", "check_joints"]
+__all__ = ["LEAST_SHARE", "OWN", "FreeWay", "JointCheck", "JointVerdict", "Realisation", "check_joints"]
 
 LEAST_SHARE: Final = 0.25  # of a guide that a slide keeps engaged at the ends of its range
 _ROUNDING = 1e-6  # of a share
@@ -41,7 +41,7 @@ _NAMES: Final = ("x", "y", "z", "about x", "about y", "about z")
 JointVerdict = Literal["made", "partly", "not made", "held by others", "not assessed"]
 
 # components x, y, z, about x, y, z in the joint's frame that the joint itself moves along
-_OWN: Final = {
+OWN: Final = {
     JointType.FIXED: (0, 0, 0, 0, 0, 0),
     JointType.REVOLUTE: (0, 0, 0, 0, 0, 1),
     JointType.SLIDER: (0, 0, 1, 0, 0, 0),
@@ -184,7 +184,7 @@ class _Examined:
         joint = self.joint
         row = JointCheck(joint.name, str(joint.type), (joint.parent, joint.child), "not assessed")
         missing = [name for name in row.parts if name not in self.scene.meshes]
-        if joint.type not in _OWN or missing:
+        if joint.type not in OWN or missing:
             return replace(row, reason=f"{' and '.join(missing)} without geometry" if missing else f"a {joint.type} joint has no surfaces")
         rest = sides(self.scene, joint)
         found = pairs(rest, self.reach)
@@ -207,7 +207,7 @@ class _Examined:
             found: Pairs of faces of the joint's two sides.
             more: Contacts of both with other bodies, and of those with each other.
         """
-        held, centre = np.array(_OWN[self.joint.type], dtype=bool), self._centre([pair.points for pair in found])
+        held, centre = np.array(OWN[self.joint.type], dtype=bool), self._centre([pair.points for pair in found])
         touches = [*(Touch(GROUND, 0, pair.points, pair.normals, pair.gaps, pair.grazing) for pair in found), *more]
         free = room(touches, held, centre)
         far = far_mm(touches)

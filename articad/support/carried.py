@@ -18,26 +18,16 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.geometry.faces import faces_of
 from articad.interference.scene import Scene
-from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.joints import Joint
 from articad.realisation.contacts import FaceReach, pairs
 from articad.realisation.room import FAR_RAD, GROUND, Touch, far_mm, rows
 from articad.realisation.sides import PartFace, Sides
+from articad.realisation.verdicts import OWN
 
 __all__ = ["Bodies", "Sinking"]
 
 REACH: Final = FaceReach(0.5, 0.5, 0.1)  # contacts from which a body may be a little apart at rest
 _ALL: Final = tuple(range(6))
-_OWN_ROWS: Final = {  # components x, y, z, about x, y, z of the joint's frame along which it moves, which its drivers hold
-    JointType.FIXED: _ALL,
-    JointType.REVOLUTE: (5,),
-    JointType.SLIDER: (2,),
-    JointType.CYLINDRICAL: (2, 5),
-    JointType.SCREW: (2, 5),
-    JointType.BALL: (3, 4, 5),
-    JointType.PLANAR: (0, 1, 5),
-    JointType.UNIVERSAL: (3, 4),
-    JointType.FREE: (),
-}
 
 
 class Sinking(NamedTuple):
@@ -116,7 +106,7 @@ class Bodies:
 
     def _centre(self, parts: Sequence[str]) -> FloatArray:
         volumes = np.array([max(self.scene.bodies[name].volume, 1e-9) for name in parts])
-        centres = np.array([self.poses[name].apply(_centroid(self.scene, name)) for name in parts])
+        centres = np.array([self.poses[name].apply(self.scene.bodies[name].mesh.centroid) for name in parts])
         return np.asarray(volumes @ centres / volumes.sum())
 
     def _touches(self) -> list[Touch]:
@@ -141,7 +131,9 @@ class Bodies:
         found = [np.zeros((0, 6 * len(self.bodies)))]
         for joint in joints:
             frame = self.poses[joint.parent] @ joint.T_parent_connector
-            components = _ALL if joint.name in made else _OWN_ROWS[joint.type]
+            components = (
+                _ALL if joint.name in made else np.flatnonzero(OWN.get(joint.type, ())).tolist()
+            )  # drivers hold what the joint moves along
             axes, point = np.asarray(frame.rotation).T, np.asarray(frame.translation)
             for component in components:
                 row = np.zeros((1, 6 * len(self.bodies)))
@@ -157,11 +149,3 @@ class Bodies:
                         row[0, 6 * body + 3 : 6 * body + 6] += sign * axis
                 found.append(row)
         return np.concatenate(found)
-
-
-def _centroid(scene: Scene, name: str) -> FloatArray:
-    mesh = scene.bodies[name].mesh
-    corners = mesh.vertices[mesh.triangles]
-    volumes = np.einsum("ti,ti->t", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
-    total = volumes.sum()
-    return np.asarray((volumes @ corners.sum(axis=1)) / (4 * total)) if abs(total) > 1e-9 else corners.mean(axis=(0, 1))
