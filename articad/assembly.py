@@ -556,14 +556,27 @@ class Assembly:
             return made
         return replace(made, findings=made.findings + Findings(lost_meshes(scene, self.mechanism)))
 
-    def assembly_order(self) -> AssemblyOrder:
+    def assembly_order(self, fastenings: Mapping[str, str] | None = None) -> AssemblyOrder:
         """Find an order in which the parts go together at rest, with a proven path for each, or the parts that block each other.
 
         Paths are straight; each step's `strength` says whether it is proven. The environment is not in the way.
+
+        Args:
+            fastenings: By joint name how it is fastened, such as "snap" or "press": its two parts then do not stop each other, and the step
+                that joins them is permitted, not proven.
+
+        Raises:
+            UnknownJointError: If there is no joint of a name.
         """
+        known = [joint.name for joint in self.joints]
+        for name in fastenings or {}:
+            if name not in known:
+                raise UnknownJointError(name, known)
         product = self.product()
         poses = Poses(product.mechanism.parts, product.mechanism.at_rest)
-        return assembly_order(product.scene(), poses, product.ground, name=product.name, others=end_poses(product.mechanism))
+        return assembly_order(
+            product.scene(), poses, product.ground, name=product.name, others=end_poses(product.mechanism), fastenings=fastenings
+        )
 
     def check_support(self) -> Support:
         """Examine whether the product stands, whether each part is carried, and what falls out when it is turned over.

@@ -5,7 +5,7 @@ Each function takes an assembly, a file in any format that is read, a plan folde
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -98,13 +98,14 @@ def certify(
     return assembly.certify(joints, pairs=pairs, epsilon=epsilon, budget=budget)
 
 
-def assembly_order(target: str | Path | Assembly) -> AssemblyOrder:
+def assembly_order(target: str | Path | Assembly, fastenings: Mapping[str, str] | None = None) -> AssemblyOrder:
     """Find an order in which the parts go together, with a proven path for each; see `Assembly.assembly_order`.
 
     Args:
         target: As for `read`, or an assembly.
+        fastenings: By joint name how it is fastened, such as "snap".
     """
-    return (target if isinstance(target, Assembly) else read(target)).assembly_order()
+    return (target if isinstance(target, Assembly) else read(target)).assembly_order(fastenings)
 
 
 def simulate(target: str | Path | Assembly, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> SimulationVerdict:

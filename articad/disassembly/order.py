@@ -326,9 +326,9 @@ class _Taking:
         if round_one is not None:
             return (
                 f"Split the bearing of {round_one.name!r}, open its side to a slot, or make its pin a part of its own; "
-                "if it snaps or is pressed into place, state that as its fastening."
+                f"if it snaps or is pressed into place, call assembly_order(fastenings={{{round_one.name!r}: 'snap'}}) in Python."
             )
-        return f"Open one side of {names[0]}, make one of the parts as two, or state the fastening of the joint that snaps or is pressed."
+        return f"Open one side of {names[0]}, make one of the parts as two, or name a joint that snaps or is pressed in assembly_order(fastenings=...) in Python."
 
 
 def _new(axes: Iterable[FloatArray], known: Sequence[FloatArray]) -> FloatArray:

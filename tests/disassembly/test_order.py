@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from collections.abc import Mapping
 
 import manifold3d as m3
 import numpy as np
 import pytest
 
+from articad.assembly import Assembly
 from articad.connectors import SE3
 from articad.disassembly.order import assembly_order
 from articad.disassembly.poses import OtherPose
 from articad.disassembly.steps import AssemblyOrder, AssemblyStep
 from articad.disassembly.ways import Ways
+from articad.errors import UnknownJointError
+from articad.geometry.part import Part
 from articad.interference.body import body_of
 from articad.interference.overlap import overlap
 from articad.interference.scene import Scene
@@ -94,6 +99,18 @@ def test_a_part_that_snaps_into_place_is_a_permitted_step() -> None:
     assert order.ok
     assert order.steps[1].strength == "permitted"
     assert order.steps[1].permitted == (("thing", "box", "snap"),)
+
+
+def test_a_part_that_no_order_takes_is_taken_when_its_hint_is_followed() -> None:
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in {"box": BOX + LID, "thing": INSIDE}.items()]
+    product = Assembly.from_parts(
+        "boxed", parts=parts, joints=[joint("b", "revolute", "box", "thing", lower=(-1.0,), upper=(1.0,))], ground="box"
+    )
+    (finding,) = product.assembly_order().findings
+    (call,) = re.findall(r"assembly_order\(fastenings=({.*?})\)", finding.hint)
+    assert product.assembly_order(ast.literal_eval(call)).ok
+    with pytest.raises(UnknownJointError, match="Known: b"):
+        product.assembly_order({"lid": "snap"})
 
 
 def test_a_t_foot_goes_through_the_wide_end_of_its_keyhole_in_two_moves() -> None:
