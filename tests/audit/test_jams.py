@@ -98,6 +98,20 @@ def test_a_rail_without_an_end_jams_by_its_hull_as_the_simulator_finds(tmp_path:
     assert "left 1 collision mesh that enclose nothing: rail" in mended.done
 
 
+def test_an_open_rail_whose_surface_meets_the_slider_s_is_no_jam_of_hulls(tmp_path: Path) -> None:
+    """Both collide as they are, so pieces would mend nothing: no solid encloses the rail, and its surface decides."""
+    path = foreign(tmp_path / "bare", from_outside=False)
+    whole = read_mesh(path.parent / "meshes/rail.stl")
+    opened(path, np.flatnonzero(np.ptp(whole.vertices[whole.triangles][:, :, 0], axis=1) == 0).tolist())
+    assert jams(path) == [("rail", "slider")]
+
+    root = etree.parse(str(path)).getroot()
+    root.find("link[@name='slider']/collision/origin").set("xyz", "0.006 0 0")  # sideways, 1 mm into a wall of the channel
+    path.write_bytes(etree.tostring(root))
+
+    assert jams(path) == []
+
+
 @pytest.mark.soak
 def test_audit_and_simulator_name_the_same_pairs_of_a_public_robot(tmp_path: Path) -> None:
     """All eight collision meshes of the arm have gaps; links 0 and 1 overlap as solids, and links 5 and 7 only as hulls."""

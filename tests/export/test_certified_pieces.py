@@ -25,7 +25,8 @@ from tests.export import judges
 
 SEGMENTS = 192  # of round shapes
 QUICK = ("sewing_things_box", "four_bar", "toggle_clamp")
-NAMES = [name if name in QUICK else pytest.param(name, marks=pytest.mark.soak) for name in judges.example_names()]
+MODELS = [*judges.example_names(), *judges.hard_names()]
+NAMES = [name if name in QUICK else pytest.param(name, marks=pytest.mark.soak) for name in MODELS]
 
 
 def surface(shape: Shape) -> tuple[TriMesh, float]:

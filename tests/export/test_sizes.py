@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from articad.agents.pipeline import replay
+from articad.assembly import Assembly
 from articad.entry import read
 from articad.export.gltf import write_glb
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
 from articad.report import report_page
+from articad.runs.record import assembly_of
+from articad.runs.run import Run
 from tests.export import judges
+from tests.export.test_every_part import ANSWERED
 
 QUICK = ("sewing_things_box", "four_bar")
 MOST_MESHES, MOST_REPORT = 3_000_000, 2_000_000  # bytes
@@ -18,8 +25,17 @@ MOST_MESHES, MOST_REPORT = 3_000_000, 2_000_000  # bytes
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [n if n in QUICK else pytest.param(n, marks=pytest.mark.soak) for n in judges.example_names()])
 def test_an_example_has_small_exports_and_a_small_report(name: str) -> None:
-    assembly = read(judges.folder_of(name))
+    assert_small(read(judges.folder_of(name)))
 
+
+@pytest.mark.soak
+@pytest.mark.parametrize("recording", ANSWERED, ids=lambda path: path.name)
+def test_a_recorded_run_has_small_exports_and_a_small_report(recording: Path, tmp_path: Path) -> None:
+    with Run.view(replay(recording, out=tmp_path / "run").run.path) as run:
+        assert_small(assembly_of(run))
+
+
+def assert_small(assembly: Assembly) -> None:
     for write in (write_urdf, write_mjcf):
         assert sum(len(content) for path, content in write(assembly).files.items() if path.endswith((".stl", ".obj"))) < MOST_MESHES
     assert sum(map(len, write_glb(assembly).files.values())) < MOST_MESHES

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -30,3 +31,4 @@ def placed(document: Any) -> dict[str, list[float]]:
 
 
 main()
+os._exit(0)  # FreeCAD 1.0 with Qt imported but no window never ends by itself
