@@ -6,7 +6,7 @@ import json
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,10 +18,11 @@ from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.collisions import Collision, kind_of, shape_model
 from articad.export.features import features_of, primitive_features, solid_enough
+from articad.export.follow import followers, leaders
 from articad.export.gltf import shaded
 from articad.export.inertia import Inertial, is_possible
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
-from articad.export.lowering import lower
+from articad.export.lowering import Follows, LoweredModel, lower
 from articad.export.markup import number
 from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
@@ -31,7 +32,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import linear_color
 from articad.geometry.part import Part, Shape
 from articad.kernels.cache import BuildCache
-from articad.kinematics.joints import Coupling, Joint, JointType
+from articad.kinematics.joints import Joint, JointType
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -94,9 +95,9 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     model = shape_model(assembly, replace(lower(assembly), features=()), kind, cache)
     colliding = {link.part.name: tuple(placed.shape for placed in link.collisions) or solid_enough(link.part) for link in model.links}
     frictions = {link.part.name: link.friction for link in model.links}
-    ties = _mimics(assembly)
+    ties, tied = _mimics(assembly, model)
     features = (
-        *_held(assembly, features_of(assembly), ties),
+        *_held(assembly, features_of(assembly), tied),
         *model.features,
         *_name_features(assembly, bodies, names),
         *primitive_features(assembly),
@@ -447,34 +448,46 @@ def _dynamics(joint: Joint) -> list[_Extra]:
     return found
 
 
-def _mimics(assembly: Assembly) -> dict[str, Coupling]:
-    """Return the couplings that NewtonMimicAPI can express, by follower: both joints are in the tree and of one kind."""
-    single = {joint.name: joint for joint in assembly.joints if joint.type in {JointType.REVOLUTE, JointType.SLIDER}}
+def _mimics(assembly: Assembly, model: LoweredModel) -> tuple[dict[str, tuple[Follows, str]], set[str]]:
+    """Return what each joint follows and the name of the joint that leads, and the places of the couplings that this expresses.
+
+    NewtonMimicAPI can tie joints of one kind, each with one freedom in the tree. Newton refuses leaders that follow others themselves.
+    """
     written = {feature.where for feature in features_of(assembly) if feature.key == "coupling"}
-    found: dict[str, Coupling] = {}
-    for coupling in assembly.mechanism.couplings:
-        a, b = single.get(coupling.a), single.get(coupling.b)
-        if f"couplings.{coupling.name}" in written and a is not None and b is not None and a.type is b.type and b.name not in found:
-            found[b.name] = coupling
-    return found
+    single = {
+        freedom.name: (freedom.kind, joint.joint.name)
+        for joint in model.joints
+        if joint.joint.type in {JointType.REVOLUTE, JointType.SLIDER}
+        for freedom in joint.freedoms
+    }
+    rows = [
+        (name, follower, follows)
+        for name, follower, follows in model.couplings
+        if f"couplings.{name}" in written
+        and {follower, follows.leader} <= single.keys()
+        and single[follower][0] == single[follows.leader][0]
+    ]
+    tied = followers(replace(model, couplings=tuple(rows)), leaders(assembly))
+    found = {single[name][1]: (follows, single[follows.leader][1]) for name, follows in tied.items() if name in single}
+    return found, {f"couplings.{name}" for name, _, _ in rows}
 
 
-def _mimic(joint: Joint, coupling: Coupling | None, names: Mapping[str, str], root: str) -> list[_Extra]:
+def _mimic(joint: Joint, tie: tuple[Follows, str] | None, names: Mapping[str, str], root: str) -> list[_Extra]:
     """Return follower = offset + ratio · leader; the offset in degrees or m."""
-    if coupling is None:
+    if tie is None:
         return []
-    offset = math.degrees(coupling.offset) if joint.type is JointType.REVOLUTE else coupling.offset / MM_PER_M
+    follows, leader = tie
+    offset = math.degrees(follows.offset) if joint.type is JointType.REVOLUTE else follows.offset
     fields = [
         f"float newton:mimicCoef0 = {number(offset)}",
-        f"float newton:mimicCoef1 = {number(coupling.ratio)}",
-        f"rel newton:mimicJoint = </{root}/joints/{names[coupling.a]}>",
+        f"float newton:mimicCoef1 = {number(follows.ratio)}",
+        f"rel newton:mimicJoint = </{root}/joints/{names[leader]}>",
     ]
     return [_Extra("NewtonMimicAPI", fields)]
 
 
-def _held(assembly: Assembly, features: Iterable[Feature], ties: Mapping[str, Coupling]) -> list[Feature]:
+def _held(assembly: Assembly, features: Iterable[Feature], tied: Container[str]) -> list[Feature]:
     """Return the features; those that USD can express for some joints only get a key of their own."""
-    tied = {f"couplings.{coupling.name}" for coupling in ties.values()}
     several = {f"joints.{joint.name}" for joint in assembly.joints if not _is_single(joint)}
     found = []
     for feature in features:

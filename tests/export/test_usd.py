@@ -66,6 +66,45 @@ def test_losses_of_couplings_and_screws_are_refused() -> None:
     assert {loss.where for loss in write_usd(all_joint_kinds()).losses if loss.refused} == {"joints.nut", "joints.bolt"}
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_chains_and_stars_of_couplings_lead_from_what_follows_nothing(seed: int) -> None:
+    """Newton refuses a leader that follows another. The relations are those of the mechanism, a coupling of an angle and a length apart."""
+    random = np.random.default_rng(seed)
+    count = 7
+    base = block("base", **{f"seat_{i}": frame(at=(100.0 * i, 0, 0)) for i in range(count)})
+    parts = [block(f"part_{i}", root=frame()) for i in range(count)]
+    kinds = random.permutation(["revolute"] * 4 + ["slider"] * 3)
+    joints = [
+        getattr(declare, kind)(f"joint_{i}", base[f"seat_{i}"], part["root"], limits=(-0.5, 0.5))
+        for i, (kind, part) in enumerate(zip(kinds, parts, strict=True))
+    ]
+    couplings = []
+    for i in range(1, count):  # a random tree, each edge in a random direction
+        a, b = random.permutation([f"joint_{random.integers(i)}", f"joint_{i}"])
+        couplings.append(
+            Coupling(f"coupling_{i}", "gear", str(a), str(b), float(random.choice([-2, -0.5, 0.5, 2])), float(random.normal()))
+        )
+    assembly = Assembly.from_parts("coupled", parts=[base, *parts], joints=joints, ground="base", couplings=couplings)
+
+    bundle = write_usd(assembly)
+
+    text = bundle.files[bundle.main].decode()
+    rows = {}
+    for name, kind in zip((f"joint_{i}" for i in range(count)), kinds, strict=True):
+        prim = text.partition(f'Joint "{name}"')[2].partition("\n        }")[0]
+        if "NewtonMimicAPI" in prim:
+            offset, ratio = (float(prim.partition(f"mimicCoef{i} = ")[2].split()[0]) for i in (0, 1))
+            unit = math.pi / 180 if kind == "revolute" else 1000.0
+            rows[name] = (prim.partition("joints/")[2].partition(">")[0], ratio, offset * unit)
+    assert not {leader for leader, _, _ in rows.values()} & rows.keys()
+    mixed = {f"couplings.{c.name}" for c in couplings if kinds[int(c.a[6:])] != kinds[int(c.b[6:])]}
+    assert {loss.where for loss in bundle.losses if loss.refused} == mixed
+    assert len(rows) == len(couplings) - len(mixed)
+    configuration = assembly.mechanism.configuration(random.normal(size=len(assembly.drivers)))
+    for name, (leader, ratio, offset) in rows.items():
+        assert configuration[name][0] == pytest.approx(ratio * configuration[leader][0] + offset, abs=1e-6)
+
+
 def test_parts_without_mass_or_shape_and_names_that_change(tmp_path: Path) -> None:
     base, bare = block("Base 1", a=frame()), Part.without_geometry("b", block("b", a=frame()).connectors)
     assembly = Assembly.from_parts(
