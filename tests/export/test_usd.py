@@ -71,7 +71,7 @@ def test_chains_and_stars_of_couplings_lead_from_what_follows_nothing(seed: int)
     """Newton refuses a leader that follows another. The relations are those of the mechanism, a coupling of an angle and a length apart."""
     random = np.random.default_rng(seed)
     count = 7
-    base = block("base", **{f"seat_{i}": frame(at=(100.0 * i, 0, 0)) for i in range(count)})
+    base = block("base", (10.0, 10.0, 10.0), **{f"seat_{i}": frame(at=(100.0 * i, 0, 0)) for i in range(count)})
     parts = [block(f"part_{i}", root=frame()) for i in range(count)]
     kinds = random.permutation(["revolute"] * 4 + ["slider"] * 3)
     joints = [
