@@ -1,6 +1,6 @@
-"""Draws the gallery of the documentation: builds every example and writes its sheet to docs/images/gallery.
+"""Draws the gallery of the documentation: a sheet of each example, and a small picture for the front page.
 
-.venv/bin/python scripts/gallery.py [NAME ...]
+.venv/bin/python scripts/gallery.py [--small] [NAME ...]
 """
 
 from __future__ import annotations
@@ -8,24 +8,34 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from PIL import Image
+
 from articad.assembly import Assembly
 from articad.plan.schema import AssemblyPlan
-from articad.render import png, product_sheet
+from articad.render import png, product_sheet, render_clean
 
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "gallery"
+SMALL = ROOT / "docs" / "images" / "live"
 PAGE = ROOT / "docs" / "gallery.md"
+SMALL_SIZE = (360, 270)  # pixels: twice what is shown
 COLOURS = 128  # colours of a sheet's palette: half the bytes, with no visible difference
 
 
 def main(names: list[str]) -> int:
-    """Draw the named examples, or all, and write the page."""
+    """Draw the named examples, or all, and write the page; with --small, only the small pictures."""
+    small = "--small" in names
+    names = [name for name in names if not name.startswith("--")]
     examples = sorted(path.parent for path in (ROOT / "examples").glob("*/plan.json"))
     IMAGES.mkdir(parents=True, exist_ok=True)
+    SMALL.mkdir(parents=True, exist_ok=True)
     for folder in examples:
         if not names or folder.name in names:
             assembly = Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
-            (IMAGES / f"{folder.name}.png").write_bytes(png(product_sheet(assembly).quantize(COLOURS)))
+            picture = render_clean(assembly, ("iso",), size=SMALL_SIZE, transparent=True)["iso"]
+            (SMALL / f"{folder.name}.png").write_bytes(png(picture.quantize(COLOURS, method=Image.Quantize.FASTOCTREE)))
+            if not small:
+                (IMAGES / f"{folder.name}.png").write_bytes(png(product_sheet(assembly).quantize(COLOURS)))
             print(folder.name)
     PAGE.write_text(_page([folder for folder in examples if (IMAGES / f"{folder.name}.png").is_file()]))
     return 0

@@ -6,6 +6,7 @@ A page is made once for each state of the plan, the scripts and the viewer, and 
 from __future__ import annotations
 
 import hashlib
+import json
 from pathlib import Path
 from typing import Any
 
@@ -22,26 +23,38 @@ REPORT = ROOT / "articad" / "report"
 
 
 def live_page(folder: Path) -> Path:
-    """Return the page of an example; it is made where it is not there yet."""
-    sources = [
-        folder / "plan.json",
-        *sorted((folder / "parts").glob("*.py")),
-        *sorted(REPORT.glob("*.py")),
-        *sorted(REPORT.glob("viewer.*")),
-    ]
-    digest = hashlib.sha256(__version__.encode())
-    for source in sources:
-        digest.update(source.read_bytes())
-    page = default_root() / "pages" / f"{folder.name}-{digest.hexdigest()[:16]}.html"
+    """Return the page of an example; it is made where it is not there yet, and its checks are not run again for another look of the page."""
+    sources = [folder / "plan.json", *sorted((folder / "parts").glob("*.py"))]
+    looks = [*sorted(REPORT.glob("*.py")), *sorted(REPORT.glob("viewer.*"))]
+    checks = _file(f"{folder.name}-{_digest(sources)}.json")
+    page = _file(f"{folder.name}-{_digest([*sources, *looks])}.html")
     if not page.is_file():
         plan = AssemblyPlan.load(folder)
         assembly = Assembly.from_plan(plan, folder / "parts")
-        text = report_page(assembly, Documents(checks=assembly.check().to_json(), plan=plan.dumps()))
-        page.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = page.with_suffix(".tmp")
-        unfinished.write_text(text, encoding="utf-8")
-        unfinished.rename(page)
+        if not checks.is_file():
+            _write(checks, json.dumps(assembly.check().to_json()))
+        report = json.loads(checks.read_text(encoding="utf-8"))
+        _write(page, report_page(assembly, Documents(checks=report, plan=plan.dumps())))
     return page
+
+
+def _digest(sources: list[Path]) -> str:
+    digest = hashlib.sha256(__version__.encode())
+    for source in sources:
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _file(name: str) -> Path:
+    return default_root() / "pages" / name
+
+
+def _write(file: Path, text: str) -> None:
+    """Write a file whole or not at all: another process may be reading."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = file.with_suffix(".tmp")
+    unfinished.write_text(text, encoding="utf-8")
+    unfinished.rename(file)
 
 
 def on_files(files: Any, *, config: Any) -> Any:

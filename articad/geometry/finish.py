@@ -15,12 +15,14 @@ class Finish:
         roughness: 0 for a mirror, 1 for chalk.
         opacity: 1 for solid; less lets through what is behind.
         gloss: Strength of the clear reflection over the colour; about 1 for paint and plastic, less for cloth and rubber.
+        grain: Strength of the rings of wood in the colour.
     """
 
     metal: float = 0.0
     roughness: float = 0.5
     opacity: float = 1.0
     gloss: float = 1.0
+    grain: float = 0.0
 
 
 # The first row with a word of the material's name counts: "painted_steel" is paint, "cast_iron" is rougher than steel.
@@ -58,7 +60,7 @@ _LOOKS: tuple[tuple[frozenset[str], Finish], ...] = (
                 "softwood",
             ]
         ),
-        Finish(0.0, 0.6, 1.0, 0.6),
+        Finish(0.0, 0.5, 1.0, 0.7, 1.0),
     ),
     (frozenset({"anodised", "anodized"}), Finish(0.55, 0.42)),
     (frozenset({"chrome", "chromed", "chromium", "mirror", "polished", "silver", "gold", "nickel"}), Finish(0.9, 0.12)),
@@ -82,7 +84,7 @@ _LOOKS: tuple[tuple[frozenset[str], Finish], ...] = (
                 "galvanised",
             ]
         ),
-        Finish(0.85, 0.3),
+        Finish(0.9, 0.26),
     ),
     (frozenset({"ceramic", "porcelain", "bone", "ivory", "marble", "stone", "granite"}), Finish(0.0, 0.25, 1.0, 1.1)),
     (

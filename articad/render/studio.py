@@ -2,6 +2,8 @@
 
 For each pixel the visible point is shaded in linear light:
 - diffuse light from a bright sky, a darker ground and two lamps, dimmed where other surfaces are near (ambient occlusion);
+- the lamps and the horizon are near, as in a studio: flat faces are shaded from one end to the other;
+- wood has rings along the longest side of its part;
 - reflections of the same lights, sharper for smoother materials, with Schlick's Fresnel term (C. Schlick, An Inexpensive BRDF Model
   for Physically-based Rendering, 1994);
 - the result compressed so that white stays below the end of the scale, and encoded as sRGB (IEC 61966-2-1).
@@ -36,6 +38,9 @@ _TILE = 61  # pixels after which the pattern of random rays repeats
 _SHADOW = 0.95  # darkness of the ground where nothing of the sky is seen
 _FADE = 0.8  # how far parts that are only context fade into the background
 _EDGE = 0.42  # strength of the lines along edges
+_LAMPS_AWAY = 1.5  # of the scene's size: from its middle to the lamps
+_PARALLAX = 0.9  # how much lower the horizon is seen from a point that is higher by the scene's size
+_RINGS = 110  # rings of wood, about, over the scene's size
 _LOW = 0.12  # sine of the lowest view from above that shows the ground
 _TOP, _BOTTOM = np.array([247.0, 248.0, 249.0]), np.array([222.0, 226.0, 231.0])  # background, sRGB
 _RED = np.array([0.75, 0.03, 0.05])  # overlaps, linear
@@ -50,6 +55,7 @@ class _Surfaces:
     rough: FloatArray
     gloss: FloatArray
     opacity: FloatArray
+    grain: FloatArray
     faded: NDArray[np.bool_]
 
 
@@ -115,6 +121,7 @@ def _looks(scene: DrawnScene) -> _Surfaces:
         rough=np.array([look.roughness for look in looks] or [0.5]),
         gloss=np.array([look.gloss for look in looks] or [1.0]),
         opacity=np.array([look.opacity for look in looks] or [1.0]),
+        grain=np.array([look.grain for look in looks] or [0.0]),
         faded=np.array([item.manner == "faded" for item in scene.items] or [False]),
     )
 
@@ -130,7 +137,9 @@ def _pass(scene: DrawnScene, camera: Camera, looks: _Surfaces) -> tuple[FloatArr
     points = _points(camera, buffers, seen)
     size = float(np.linalg.norm(np.ptp(scene.bounds, axis=0)))
     open_sky = _smoothed(_openness(scene, camera, points, normal, size, seen), buffers, seen)
-    lit = _light(camera, normal, open_sky, looks, index)
+    place = points + camera.centre - scene.bounds.mean(axis=0)
+    base = looks.color[index] * _grain(scene, place + scene.bounds.mean(axis=0), looks, index, size)
+    lit = _light(camera, normal, place / max(size, 1e-9), open_sky, looks, index, base)
     cut = buffers.cut[seen]
     if cut.any():
         rows, columns = np.nonzero(seen)
@@ -208,29 +217,61 @@ def _lamps(camera: Camera) -> tuple[FloatArray, FloatArray, FloatArray]:
     return first, second, third
 
 
-def _light(camera: Camera, normal: FloatArray, open_sky: FloatArray, looks: _Surfaces, index: NDArray[Any]) -> FloatArray:
-    """Return the linear colour of each visible point, `(n, 3)`."""
-    base, metal, rough, gloss = looks.color[index], looks.metal[index][:, None], looks.rough[index], looks.gloss[index]
-    key, fill, rim = _lamps(camera)
+def _grain(scene: DrawnScene, points: FloatArray, looks: _Surfaces, index: NDArray[Any], size: float) -> FloatArray:
+    """Return by how much the rings of wood darken the colour of each point, `(n, 3)`; ones for other materials.
+
+    Rings are the level lines of a function that bends slowly along the longest side of the part, cut by the surface wherever it lies.
+    """
+    tones = np.ones((len(points), 3))
+    for number in np.flatnonzero(looks.grain):
+        own = index == number
+        if not own.any():
+            continue
+        item = scene.items[number]
+        local = (points[own] - item.T_ground.translation) @ item.T_ground.matrix[:3, :3] * (_RINGS / size)
+        longest = int(np.ptp(item.mesh.vertices, axis=0).argmax())
+        a, b, c = (local[:, (longest + k) % 3] for k in range(3))
+        a = 0.06 * a
+        level = b + 0.55 * c + 0.9 * np.sin(0.35 * b + 0.8 * a) + 0.6 * np.sin(1.7 * a + 0.23 * c)
+        late = (0.5 + 0.5 * np.sin(2.2 * level)) ** 3
+        fine = 0.5 + 0.5 * np.sin(7.1 * b + 5.3 * c + 3 * np.sin(0.9 * c + 2.3 * a))
+        tone = 1 - looks.grain[number] * (0.20 * late + 0.07 * fine)
+        tones[own] = tone[:, None] ** np.array([1.0, 1.15, 1.3])
+    return tones
+
+
+def _light(
+    camera: Camera, normal: FloatArray, place: FloatArray, open_sky: FloatArray, looks: _Surfaces, index: NDArray[Any], base: FloatArray
+) -> FloatArray:
+    """Return the linear colour of each visible point, `(n, 3)`; `place` is relative to the scene's middle and size."""
+    metal, rough, gloss = looks.metal[index][:, None], looks.rough[index], looks.gloss[index]
+    ways = [_LAMPS_AWAY * lamp - place for lamp in _lamps(camera)]
+    key, fill, rim = (way / np.linalg.norm(way, axis=1, keepdims=True) for way in ways)
     shaded = 0.12 + 0.88 * open_sky
     ambient = (_GROUND + _SKY) / 2 + (_SKY - _GROUND) / 2 * normal[:, 2]
-    lamps = _KEY * np.maximum(normal @ key, 0) * (0.35 + 0.65 * open_sky) + _FILL * np.maximum(normal @ fill, 0)
+    lamps = _KEY * np.maximum(_along(normal, key), 0) * (0.35 + 0.65 * open_sky) + _FILL * np.maximum(_along(normal, fill), 0)
     diffuse = base * (ambient * shaded + lamps)[:, None]
-    # Reflections: the sky's gradient, and lamps as soft boxes whose size grows with the roughness.
+    # Reflections: the sky's gradient over a dark horizon, and lamps as soft boxes whose size grows with the roughness.
     facing = np.clip(normal @ camera.eye, 0.0, 1.0)
     mirrored = 2 * facing[:, None] * normal - camera.eye
     spread = np.clip(rough, 0.05, 1.0)
-    horizon = mirrored[:, 2] / (0.25 + spread)
-    reflected = 0.30 + 0.34 * np.tanh(horizon) + 0.12 * (1 - spread)
-    for lamp, strength in ((key, 1.5), (fill, 0.55), (rim, 0.9)):
+    horizon = (mirrored[:, 2] + _PARALLAX * place[:, 2]) / (0.25 + spread)
+    reflected = 0.34 + (0.34 + 0.22 * metal[:, 0]) * np.tanh(horizon) + 0.12 * (1 - spread)
+    for lamp, strength in ((key, 1.9), (fill, 1.0), (rim, 1.0)):
         sharp = 2.0 / (0.02 + spread**1.6 * 0.55)
-        reflected = reflected + strength * (1 - 0.62 * spread) * np.exp(sharp * (mirrored @ lamp - 1))
-    reflected = np.maximum(reflected, 0.03) * (0.3 + 0.7 * open_sky)
+        reflected = reflected + strength * (1 - 0.62 * spread) * np.exp(sharp * (_along(mirrored, lamp) - 1))
+    reflected = np.maximum(reflected, 0.05) * (0.3 + 0.7 * open_sky)
     mirror = 0.04 * gloss[:, None] * (1 - metal) + base * 1.12 * metal
     grazing = (1 - facing) ** 5 * (1 - 0.75 * spread) * np.minimum(gloss, 1.0)
     fresnel = mirror + (np.maximum(mirror, 0.6) - mirror) * grazing[:, None]
     lit: FloatArray = diffuse * (1 - metal * 0.82) * (1 - 0.5 * grazing[:, None]) + fresnel * reflected[:, None] * (1 + 0.25 * metal)
     return lit
+
+
+def _along(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the scalar products of the rows of two arrays."""
+    product: FloatArray = np.einsum("ij,ij->i", a, b)
+    return product
 
 
 def _behind_glass(

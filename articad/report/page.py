@@ -14,6 +14,7 @@ from html import escape
 from importlib.resources import files
 
 from articad.assembly import Assembly
+from articad.report.icons import icon
 from articad.report.model import viewer_model
 from articad.report.overlaps import drawn_overlaps
 from articad.report.sections import Documents, all_sections, badges, facts_about, summary, total_mass
@@ -50,9 +51,9 @@ def report_page(assembly: Assembly, documents: Documents | None = None, *, watch
             _header(assembly, documents),
             '<div id="banner" role="alert" hidden></div>\n<main>\n',
             _stage(assembly),
+            '<div id="card" hidden></div>\n',
             '<div id="panel" tabindex="0" role="region" aria-label="controls and reports">\n<p id="status" role="status" aria-live="polite"></p>\n',
             f'<p class="unseen">{escape(summary(assembly, documents))}</p>\n',
-            '<div id="card" hidden></div>\n',
             _motion(),
             all_sections(assembly, documents),
             _keys(),
@@ -96,18 +97,20 @@ def _header(assembly: Assembly, documents: Documents) -> str:
     counts = {"part": len(assembly.parts), "joint": len(assembly.joints), "freedom": assembly.mechanism.mobility}
     told = ", ".join(f"{count} {thing}{'' if count == 1 else 's'}" for thing, count in counts.items()) + f", {total_mass(assembly)}"
     return (
-        f'<header><h1>{escape(assembly.name)}</h1><span class="quiet">{escape(told)}</span>{badges(documents, moves=bool(assembly.drivers))}'
-        '<button type="button" id="theme" aria-label="light or dark">◐</button></header>\n'
+        f'<header><h1>{escape(assembly.name)}</h1><button type="button" id="theme" aria-label="light or dark">{icon("theme")}</button>'
+        f'<span class="quiet">{escape(told)}</span><span class="badges">{badges(documents, moves=bool(assembly.drivers))}</span></header>\n'
     )
+
+
+_TOOLS = {"parallel": "parallel rays", "axes": "joint axes", "names": "names of parts", "measure": "measure"}
 
 
 def _stage(assembly: Assembly) -> str:
-    views = "".join(f'<button type="button" data-view="{view}">{view}</button>' for view in _VIEWS)
-    tools = "".join(
-        f'<button type="button" id="tool-{key}" aria-pressed="false">{key}</button>' for key in ("parallel", "axes", "names", "measure")
-    )
-    axes = "".join(f'<line id="triad-{a}" class="{a}" x1="30" y1="30" x2="30" y2="30"/>' for a in "xyz")
-    names = "".join(f'<text id="triad-{a}-name" class="{a}" x="30" y="30">{a}</text>' for a in "xyz")
+    views = "".join(_tool(f'data-view="{view}"', view, f"{view} view") for view in _VIEWS)
+    tools = "".join(_tool(f'id="tool-{key}" aria-pressed="false"', key, label) for key, label in _TOOLS.items())
+    rest = _tool('id="reset"', "reset", "back to rest")
+    axes = "".join(f'<line id="triad-{a}" class="{a}" x1="50" y1="50" x2="50" y2="50"/>' for a in "xyz")
+    names = "".join(f'<text id="triad-{a}-name" class="{a}" x="50" y="50">{a}</text>' for a in "xyz")
     cuts = "".join(
         f'<div class="cut"><label><input type="checkbox" id="cut-{a}"> {a}</label>'
         f'<input type="range" id="cut-{a}-at" aria-label="position of the section across {a}" min="0" max="1" step="any" value="0.5">'
@@ -123,15 +126,23 @@ def _stage(assembly: Assembly) -> str:
     saves = "".join(f'<button type="button" id="{key}">{label}</button>' for key, label in saved)
     return (
         f'<div id="stage"><canvas id="canvas" tabindex="0" role="application" aria-label="Model of {escape(assembly.name)}: '
-        'arrow keys turn it, plus and minus zoom"></canvas><div id="labels" aria-hidden="true"></div>\n'
-        f'<div id="tools"><button type="button" id="play" aria-pressed="false">▶ Play</button>{views}{tools}'
-        '<button type="button" id="reset">rest</button><button type="button" id="unfocus" hidden>show all</button></div>\n'
+        'arrow keys turn it, plus and minus zoom"></canvas><div id="labels" aria-hidden="true"><svg id="leaders"></svg></div>\n'
+        f'<div id="tools"><button type="button" id="play" aria-pressed="false">▶ Play</button>'
+        f'<div class="bar">{views}</div><div class="bar">{tools}</div>'
+        f'<div class="bar">{rest}</div>'
+        '<button type="button" id="unfocus" hidden>show all</button></div>\n'
         '<p id="measured" hidden></p>\n'
-        f'<svg id="triad" viewBox="0 0 60 60" aria-hidden="true">{axes}{names}</svg>\n'
-        '<div id="cuts"><label>explode <input type="range" id="explode" min="0" max="1.5" step="any" value="0"></label>'
-        f'<details class="menu"><summary>section</summary><div>{cuts}</div></details>'
-        f'<details class="menu"><summary>save</summary><div>{saves}</div></details></div></div>\n'
+        f'<svg id="cube" viewBox="0 0 100 100" aria-hidden="true">{axes}{names}</svg>\n'
+        f'<div id="cuts"><label title="pull the parts out of each other">{icon("explode")}<span>explode</span>'
+        '<input type="range" id="explode" min="0" max="1.5" step="any" value="0"></label>'
+        f'<details class="menu"><summary>{icon("section")}section</summary><div>{cuts}</div></details>'
+        f'<details class="menu"><summary>{icon("save")}save</summary><div>{saves}</div></details></div></div>\n'
     )
+
+
+def _tool(attributes: str, drawing: str, label: str) -> str:
+    """Return a button that shows an icon; its name appears under the pointer and is read aloud."""
+    return f'<button type="button" {attributes} aria-label="{label}" data-tip="{label}">{icon(drawing)}</button>'
 
 
 def _motion() -> str:

@@ -159,7 +159,8 @@ def _findings(findings: Sequence[Json], known: set[str]) -> str:
     for finding in {(entry["code"], entry["message"]): entry for entry in reversed(findings)}.values():
         numbers = measured_against(finding)
         times = same[finding["code"], finding["message"]]
-        told = [finding.get("cause"), finding.get("hint")]
+        cause = finding.get("cause") or ""
+        told = [cause if " " in cause else "", finding.get("hint")]  # one word is for programs
         hint = "".join(f'<br><span class="hint">{escape(words)}</span>' for words in told if words)
         parts, pose = finding.get("parts") or [], finding.get("pose")
         rows.append(
@@ -169,7 +170,7 @@ def _findings(findings: Sequence[Json], known: set[str]) -> str:
                 _show(finding["code"], parts, pose, known) if pose or known.intersection(parts) else None,
             ]
         )
-    return _scroll(html_table(["code", "what", ""], rows[::-1]))
+    return _scroll(html_table(["code", "what", ""], rows[::-1]), "scroll findings")
 
 
 def _audit(audit: Json | None) -> str:
@@ -198,15 +199,15 @@ def _parts(assembly: Assembly) -> str:
         indent = "\N{NO-BREAK SPACE}" * (3 * depth[name])
         rows.append(
             [
-                Html(f'<input type="checkbox" checked data-visible="{number}" aria-label="show {escape(name)}">'),
+                Html(f'<input type="checkbox" class="eye" checked data-visible="{number}" aria-label="show {escape(name)}">'),
                 Html(
                     f'<span class="part">{indent}<svg class="swatch" viewBox="0 0 1 1" aria-hidden="true"><rect width="1" height="1" '
-                    f'fill="{escape(part.color)}"/></svg><button type="button" data-part="{number}">{escape(name)}</button></span>'
+                    f'fill="{escape(part.color)}"/></svg><button type="button" class="plain" data-part="{number}">{escape(name)}</button></span>'
                 ),
                 part.material,
                 None if part.mass is None else f"{part.mass.mass:.4g}",
                 None if part.solid is None else f"{part.solid.volume:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}"),
-                Html(f'<button type="button" data-stl="{number}" aria-label="save {escape(name)} as STL">STL</button>'),
+                Html(f'<button type="button" class="plain" data-stl="{number}" aria-label="save {escape(name)} as STL">STL</button>'),
             ]
         )
     note = (
@@ -430,5 +431,5 @@ def _link(path: str) -> Html:
     return Html(f'<a href="{escape("./" + quote(path))}">{escape(path)}</a>')
 
 
-def _scroll(table: str) -> str:
-    return f'<div class="scroll" tabindex="0" role="group">{table}</div>' if table else ""
+def _scroll(table: str, kind: str = "scroll") -> str:
+    return f'<div class="{kind}" tabindex="0" role="group">{table}</div>' if table else ""

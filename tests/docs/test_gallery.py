@@ -36,6 +36,35 @@ def test_readme_and_home_open_with_a_picture_that_moves_and_loads_at_once() -> N
     assert all(panel.mean() > 0.005 for panel in np.array_split(moved, 3, axis=1)), "each of the three products moves"
 
 
+def test_home_opens_with_the_lamp_and_every_other_live_model_is_one_click_away() -> None:
+    home = (ROOT / "docs" / "index.md").read_text()
+
+    assert home.index("live/desk_lamp.html#play") < home.index("./scripts/demo")
+    for name in NAMES:
+        assert f'"live/{name}.html' in home
+        if name != "desk_lamp":
+            with Image.open(ROOT / "docs" / "images" / "live" / f"{name}.png") as picture:
+                assert picture.size == (360, 270)
+                alpha = np.asarray(picture.convert("RGBA"))[..., 3]
+            assert 0.05 < (alpha > 250).mean() < 0.9, "a model on no background"
+
+
+def test_the_badges_are_true() -> None:
+    """They are drawn from pyproject.toml, and a reader of it by hand finds the same."""
+    spec = importlib.util.spec_from_file_location("badges", ROOT / "scripts" / "badges.py")
+    assert spec is not None
+    assert spec.loader is not None
+    badges = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(badges)
+
+    assert badges.main(["--check"]) == 0
+    drawn, project = (ROOT / "docs" / "images" / "badges.svg").read_text(), (ROOT / "pyproject.toml").read_text()
+    assert "≥ 3.11" in drawn
+    assert 'requires-python = ">=3.11"' in project
+    assert "Apache-2.0" in drawn
+    assert "Apache License" in (ROOT / "LICENSE").read_text()[:300]
+
+
 def test_the_sites_hook_makes_a_page_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ARTICAD_CACHE", str(tmp_path))
     spec = importlib.util.spec_from_file_location("live_pages", ROOT / "scripts" / "live_pages.py")

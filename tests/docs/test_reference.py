@@ -1,4 +1,4 @@
-"""Every public name stands on the page of the Python reference, and says its units and errors."""
+"""Every public name stands on a page of the Python reference, and says its units and errors."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 
 import articad
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "reference" / "python.md").read_text()
+PAGES = "\n".join(page.read_text() for page in sorted((Path(__file__).resolve().parents[2] / "docs" / "reference").glob("python-*.md")))
 NAMES = [name for name in articad.__all__ if not name.startswith("__")]
 # Words that state the unit of a number, or that it is a ratio, a direction or a transformation.
 UNIT = re.compile(r"\[|\bmm\b|\brad\b|\bkg\b|pixels|share|factor|\d\)|direction|seconds|fraction|quaternion|[mM]illimet", re.IGNORECASE)
@@ -22,8 +22,8 @@ DEFECTS = {"AttributeError", "AssertionError", "NotImplementedError", "TypeError
 
 
 def documented() -> dict[str, str | None]:
-    """Return the modules of the page with the members that are shown, None for all."""
-    sections = re.findall(r"^::: (articad[\w.]*)\n((?:    .*\n)*)", PAGE, re.MULTILINE)
+    """Return the modules of the pages with the members that are shown, None for all."""
+    sections = re.findall(r"^::: (articad[\w.]*)\n((?:    .*\n)*)", PAGES, re.MULTILINE)
     shown = {module: re.search(r"members: \[(.*)\]", options) for module, options in sections}
     return {module: None if members is None else members[1] for module, members in shown.items()}
 
@@ -44,7 +44,7 @@ def functions(name: str) -> Iterator[tuple[str, Callable[..., Any]]]:
 def test_a_public_name_stands_in_the_reference(name: str) -> None:
     module = getattr(articad, name).__module__
     members = documented().get(module, "")
-    assert members is None or name in members.split(", "), f"add {module}.{name} to docs/reference/python.md"
+    assert members is None or name in members.split(", "), f"add {module}.{name} to a page docs/reference/python-*.md"
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -303,6 +303,8 @@ def test_corners_edges_faces_and_axes_are_measured(open_page: Open) -> None:
     assert "0.000 mm, parallel (face; face)" in faces
     turned = measured("iso", ("base", [3.0, -20.0, 0.0]), ("base", [30.0, 3.0, 0.0]))
     assert "90.00° (face; face)" in turned
+    beside = measured("front", ("base", [10.0, -20.0, -14.02]), ("base", [3.0, -20.0, 0.0]))
+    assert "edge, 60.000 mm long; face" in beside, "an outline is caught from just beside it"
     corner = measured("front", ("base", [30.0, -20.0, -14.0]), ("base", [-30.0, -20.0, -14.0]))
     assert corner.startswith("base – base: 60.000 mm (Δx -60.000, Δy 0.000, Δz 0.000)")
     assert_silent(opened)
@@ -412,10 +414,21 @@ def test_targets_are_large_and_borders_are_seen(open_page: Open, screen: dict[st
         return Math.min(width + 6 * (e.type === 'checkbox'), height + 6 * (e.type === 'checkbox')) < 24;
       })()).map(e => e.id || e.outerHTML.slice(0, 80))""")
     assert small == []
-    border, panel = opened(
-        "(() => { const s = getComputedStyle(document.querySelector('#reset')); return [s.borderTopColor, getComputedStyle(document.querySelector('#panel')).backgroundColor] })()"
-    )
-    assert contrast(border, panel) >= 3
+    # What a control is known by, its icon or its border, stands out from what is behind it.
+    for control, by in (
+        ("#reset", "color"),
+        ("#tool-names", "color"),
+        (".eye", "color"),
+        (".value", "borderTopColor"),
+        ("#theme", "color"),
+    ):
+        seen, panel = opened(
+            """([control, by]) => [getComputedStyle(document.querySelector(control))[by],
+                getComputedStyle(document.querySelector('#panel')).backgroundColor]""",
+            [control, by],
+        )
+        assert contrast(seen, panel) >= 3, control
+    assert opened("[...document.querySelectorAll('#tools button')].every(b => b.textContent.trim() || b.ariaLabel)"), "icons have names"
     assert opened("[...document.querySelectorAll('h1, h2')].length") >= 4
     assert "No interference at rest" in opened("document.querySelector('.unseen').textContent")
 
@@ -429,7 +442,8 @@ def test_a_phone_keeps_the_model_above_its_sliders_and_shows_tables_as_cards(ope
     assert opened("document.querySelector('#stage').getBoundingClientRect().top") == pytest.approx(0, abs=1)
     assert opened("getComputedStyle(document.querySelector('.scroll thead')).display") == "none"
     assert opened("getComputedStyle(document.querySelector('.scroll tr')).display") == "grid"
-    assert opened("getComputedStyle(document.querySelector('.scroll td[data-label]'), '::before').content").strip('"') == "code"
+    label = "getComputedStyle(document.querySelector('.scroll:not(.findings) td[data-label]'), '::before').content"
+    assert opened(label).strip('"') == "part"
 
 
 AXE = Path(os.environ.get("ARTICAD_AXE", ROOT / "articad/report/viewer/node_modules/axe-core/axe.min.js"))

@@ -5,7 +5,9 @@ import { Solver } from "./solver.js";
 import { DIRECTIONS, View } from "./view.js";
 import { save, shapesOf, stl } from "./files.js";
 import { between, described } from "./features.js";
+import { Cube } from "./cube.js";
 import { gifOf } from "./gif.js";
+import { Labels } from "./labels.js";
 import { cycle, Player } from "./player.js";
 import { watch } from "./watch.js";
 
@@ -101,7 +103,8 @@ function slider({ label, unit, lower, upper, endless, read, write, restValue, dr
   const limits = endless ? "no limits" : `${shown(lower, unit)} … ${shown(upper, unit)}`;
   name.append(element("small", { className: "limits", textContent: limits }));
   range.title = limits;
-  const row = element("div", { className: "driver" }, name, range, number, element("span", { className: "unit", textContent: unit === "rad" ? "°" : "mm" }), play);
+  const value = element("span", { className: "value" }, number, element("span", { className: "unit", textContent: unit === "rad" ? "°" : "mm" }));
+  const row = element("div", { className: "driver" }, name, range, value, play);
   const control = {
     refresh() {
       const value = read() * factor;
@@ -692,42 +695,25 @@ function buildKeys() {
 // ------------------------------------------------------------------ names over the picture
 
 let named = false;
-const labels = new Map();
-
-function label(key, text, className) {
-  if (!labels.has(key)) labels.set(key, $("labels").appendChild(element("span", { textContent: text, className })));
-  return labels.get(key);
-}
+const labels = new Labels($("labels"), $("leaders"));
+let cube = null;
 
 function refreshLabels() {
   if (!view?.poses) return;
-  for (const made of labels.values()) made.hidden = true;
-  const put = (made, point) => {
-    const [x, y, before] = view.screen(point);
-    made.hidden = !before;
-    made.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
-  };
   mechanism.joints.forEach((joint, index) => {
     const wanted = joint.type !== "fixed" && (view.axes.visible || emphasised === joint.name || emphasised?.startsWith(`${joint.name}.`));
     if (!wanted) return;
     const e = view.triads[index].matrix.elements;
-    put(label(`joint ${index}`, joint.name, "joint"), new Vector3(e[12] + 1.15 * e[8], e[13] + 1.15 * e[9], e[14] + 1.15 * e[10]));
+    labels.put(`joint ${index}`, joint.name, "joint", view.screen(new Vector3(e[12] + 1.15 * e[8], e[13] + 1.15 * e[9], e[14] + 1.15 * e[10])));
   });
   if (named) {
     view.groups.forEach((group, index) => {
       if (!group.visible || !model.parts[index].shapes.length) return;
-      put(label(`part ${index}`, mechanism.parts[index], "part"), new Vector3(...model.parts[index].middle).applyMatrix4(group.matrix));
+      labels.put(`part ${index}`, mechanism.parts[index], "part", view.screen(new Vector3(...model.parts[index].middle).applyMatrix4(group.matrix)));
     });
   }
-  const turned = view.camera.matrixWorldInverse.elements;
-  ["x", "y", "z"].forEach((axis, k) => {
-    const x = 30 + 20 * turned[4 * k], y = 30 - 20 * turned[4 * k + 1];
-    const line = $(`triad-${axis}`), text = $(`triad-${axis}-name`);
-    line.setAttribute("x2", x.toFixed(1));
-    line.setAttribute("y2", y.toFixed(1));
-    text.setAttribute("x", (30 + 27 * turned[4 * k]).toFixed(1));
-    text.setAttribute("y", (33 - 27 * turned[4 * k + 1]).toFixed(1));
-  });
+  labels.arrange();
+  cube?.turn(view.camera.matrixWorldInverse.elements);
 }
 
 // ------------------------------------------------------------------ what tests and consoles may ask
@@ -756,6 +742,7 @@ function begin() {
     console.warn(String(error));
   }
   if (view) {
+    cube = new Cube($("cube"), (side) => view.look(side));
     view.measure(mechanism.poses(Q));
     view.resize();
     view.look("iso");

@@ -23,6 +23,7 @@ const STILL = 140; // ms without a change until the frame of full quality
 const SLOW = 48, QUICK = 26; // ms of a frame: draw fewer pixels, or more
 const SCALES = [1, 0.75, 0.55, 0.4, 0.3]; // of the pixels in each direction, while something moves
 const NEAR_EDGE = 8, NEAR_CORNER = 12; // pixels within which an edge or a corner is caught
+const BESIDE = 4; // pixels beside the outline of a part within which it is still meant
 export const DIRECTIONS = {
   iso: [1, -1.4, 0.9], front: [0, -1, 0], back: [0, 1, 0], left: [-1, 0, 0], right: [1, 0, 0], top: [0, -1e-4, 1], bottom: [0, -1e-4, -1],
 };
@@ -127,7 +128,7 @@ export class View {
       group.userData = { line, materials: [] };
       for (const shape of part.shapes) {
         const { geometry, edges } = this.meshes[shape.mesh];
-        const material = lookOf(shape.color ?? part.color, part.finish, this.shared);
+        const material = lookOf(shape.color ?? part.color, part.finish, this.shared, geometry);
         refreshLook(material, { faded: false, opacity: 1, cutting: false });
         const surface = new Mesh(geometry, material);
         const outline = new LineSegments(edges, line);
@@ -446,13 +447,18 @@ export class View {
   // What is under the pointer: exactly there, or a corner, an edge or a face of the part.
   pick(clientX, clientY, { exact = false } = {}) {
     const bounds = this.canvas.getBoundingClientRect();
-    const at = new Vector2(((clientX - bounds.left) / bounds.width) * 2 - 1, 1 - ((clientY - bounds.top) / bounds.height) * 2);
+    this.camera.updateMatrixWorld();
+    const surfaces = this.groups.filter((group, index) => group.visible && !this.#faded(index)).flatMap((group) => group.children.filter((o) => o.userData.part !== undefined));
     const ray = new Raycaster();
     ray.layers.set(PARTS);
-    this.camera.updateMatrixWorld();
-    ray.setFromCamera(at, this.camera);
-    const surfaces = this.groups.filter((group, index) => group.visible && !this.#faded(index)).flatMap((group) => group.children.filter((o) => o.userData.part !== undefined));
-    const hit = ray.intersectObjects(surfaces, false).find(({ point }) => this.planes.every((plane) => plane.distanceToPoint(point) >= 0));
+    const through = (x, y) => {
+      const at = new Vector2(((x - bounds.left) / bounds.width) * 2 - 1, 1 - ((y - bounds.top) / bounds.height) * 2);
+      ray.setFromCamera(at, this.camera);
+      return [at, ray.intersectObjects(surfaces, false).find(({ point }) => this.planes.every((plane) => plane.distanceToPoint(point) >= 0))];
+    };
+    let [at, hit] = through(clientX, clientY);
+    // Just beside the outline: what is nearest there.
+    for (let turn = 0; !hit && !exact && turn < 8; turn++) [, hit] = through(clientX + BESIDE * Math.cos((turn * Math.PI) / 4), clientY + BESIDE * Math.sin((turn * Math.PI) / 4));
     if (!hit) return null;
     const { part, mesh } = hit.object.userData;
     const group = this.groups[part];
@@ -534,6 +540,7 @@ export class View {
 
   #resolution(scale) {
     if (this.renderer.getPixelRatio() !== this.ratio * scale) this.renderer.setPixelRatio(this.ratio * scale);
+    this.shared.detail.value = scale;
     this.shared.hatch.value = [1.2 * this.ratio * scale, 7 * this.ratio * scale];
     for (const { userData } of this.groups) userData.line.opacity = (userData.edge ?? EDGE) * (0.3 + 0.7 * scale);
   }
@@ -573,6 +580,8 @@ export class View {
     this.camera.updateMatrixWorld();
     const { planes, cuts, up } = this.shared;
     up.value.set(0, 0, 1).transformDirection(this.camera.matrixWorldInverse);
+    this.shared.middle.value.copy(this.middle).applyMatrix4(this.camera.matrixWorldInverse);
+    this.shared.size.value = this.size;
     cuts.value = this.planes.length;
     this.planes.forEach((plane, k) => {
       const seen = plane.clone().applyMatrix4(this.camera.matrixWorldInverse);
