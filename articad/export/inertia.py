@@ -24,6 +24,7 @@ MM_PER_M = 1000.0
 LEAST_MOMENT_KG_M2 = 2e-14  # simulators reject a smaller principal moment: MuJoCo refuses 1e-14
 LEAST_SHARE = 1e-12  # of the sum of second moments, in each direction of a written body: rods and plates have none in theory
 DUST_SHARE = 1e-13  # of the largest moment of inertia: smaller products are rounding noise
+_JACOBI_SWEEPS = 8  # Jacobi's method converges quadratically: 3 by 3 matrices need at most 5
 LEAST_RADIUS_M = 1e-3  # radius of gyration of a body along a direction in which its inertia gives a negative second moment
 
 
@@ -86,6 +87,30 @@ class Inertial:
         noise = (np.abs(self.inertia) < DUST_SHARE * largest) & ~np.eye(3, dtype=bool)
         com = tidy(self.com, math.sqrt(largest / self.mass) if self.mass > 0 else 0.0)
         return Inertial(self.mass, np.array(com), np.where(noise, 0.0, self.inertia))
+
+    def principal(self) -> tuple[FloatArray, FloatArray]:
+        """Return the principal moments [kg·m²], `(3,)`, and the principal axes as columns of a rotation, `(3, 3)`.
+
+        Jacobi's method (Golub, Van Loan: Matrix Computations, 8.5): each rotation by at most 45° removes one product of inertia. Unlike a
+        general solver, it leaves the axes of a diagonal matrix as they are, and turns no further than needed where moments are equal.
+        """
+        A, R = np.array(self.inertia, dtype=np.float64), np.eye(3)
+        noise = 1e-17 * float(np.abs(A).max())
+        for _ in range(_JACOBI_SWEEPS):
+            for p, q in ((0, 1), (0, 2), (1, 2)):
+                if abs(A[p, q]) <= noise:
+                    continue
+                # tan 2θ = 2 A_pq / (A_qq − A_pp); the smaller root t = tan θ of t² + 2τt − 1 = 0
+                tau = (A[q, q] - A[p, p]) / (2 * A[p, q])
+                if abs(tau) < DUST_SHARE:
+                    tau = 0.0
+                t = (1.0 if tau >= 0 else -1.0) / (abs(tau) + math.hypot(tau, 1.0))
+                c = 1 / math.hypot(t, 1.0)
+                J = np.eye(3)
+                J[p, p] = J[q, q] = c
+                J[p, q], J[q, p] = t * c, -t * c
+                A, R = J.T @ A @ J, R @ J
+        return np.diag(A).copy(), R
 
     @property
     def pseudo(self) -> FloatArray:

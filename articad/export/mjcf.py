@@ -490,10 +490,12 @@ def _placement(T: SE3) -> dict[str, str]:
 
 
 def _inertial(body: Any, inertial: Inertial) -> None:
+    """Write mass properties by principal axes, which every reader of MJCF knows: PyBullet ignores `fullinertia`."""
     inertial = inertial.inside_bounds().without_dust()
-    I = inertial.inertia
-    moments = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
-    child(body, "inertial", {"pos": numbers(inertial.com), "mass": number(inertial.mass), "fullinertia": numbers(moments)})
+    moments, axes = inertial.principal()
+    quat = tidy(wxyz(SE3.from_rotation(axes)))
+    turned = {"quat": numbers(quat)} if quat[0] != 1 else {}
+    child(body, "inertial", {"pos": numbers(inertial.com)} | turned | {"mass": number(inertial.mass), "diaginertia": numbers(moments)})
 
 
 def _half_sizes(form: Primitive) -> list[float]:
@@ -519,8 +521,8 @@ def _joint(freedom: AxisMotion, *, foreign: bool = False) -> dict[str, str]:
     turn = freedom.kind == "turn"
     attributes = {"name": freedom.name, "type": "hinge" if turn else "slide", "axis": numbers(tidy(freedom.axis))}
     bounds = _range(freedom)
-    if bounds is not None:
-        attributes["range"] = bounds
+    if bounds is not None:  # "limited" follows from the range in MuJoCo, not in PyBullet
+        attributes |= {"limited": "true", "range": bounds}
     effort = freedom.load.effort
     if not effort > 0 or (foreign and "effort" in freedom.load.assumed):
         return attributes | _dynamics(freedom)

@@ -20,7 +20,7 @@ from articad.export.collisions import Collision, kind_of, shape_model
 from articad.export.features import features_of, primitive_features, solid_enough
 from articad.export.follow import followers, leaders
 from articad.export.gltf import shaded
-from articad.export.inertia import Inertial, is_possible
+from articad.export.inertia import Inertial
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.lowering import Follows, LoweredModel, lower
 from articad.export.markup import number
@@ -309,16 +309,11 @@ def _body(
 def _mass(mass: MassProperties | None) -> list[str]:
     if mass is None:
         return [f"float physics:mass = {number(CARRIER_MASS_KG)}"]
-    inertia = mass.inertia
-    if not is_possible(mass.mass, inertia / MM_PER_M**2):
-        inertia = Inertial(mass.mass, mass.com / MM_PER_M, inertia / MM_PER_M**2).possible().inertia * MM_PER_M**2
-    moments, axes = np.linalg.eigh(inertia)
-    if np.linalg.det(axes) < 0:
-        axes = axes * [1.0, 1.0, -1.0]
+    moments, axes = Inertial.from_part(mass, SE3.identity()).possible().without_dust().principal()
     return [
         f"float physics:mass = {number(mass.mass)}",
         f"point3f physics:centerOfMass = {_tuple(mass.com / MM_PER_M)}",
-        f"float3 physics:diagonalInertia = {_tuple(moments / MM_PER_M**2)}",
+        f"float3 physics:diagonalInertia = {_tuple(moments)}",
         f"quatf physics:principalAxes = {_quaternion(SE3.from_rotation(axes))}",
     ]
 

@@ -143,8 +143,8 @@ def run(
 ) -> EngineOutcome:
     """Load, hold and drive a model; parts of one body do not collide, as with PyBullet's defaults.
 
-    An MJCF is not tried if PyBullet does not read the inertia of a link: it ignores `fullinertia`, and takes none from meshes whose type is
-    that of their class. What it would simulate is another model.
+    Inertias are those of the file. PyBullet reads them from a URDF, and from an MJCF with `diaginertia` and `inertiafromgeom="false"`;
+    otherwise, it computes them from the boxes of the collision shapes. An MJCF is not tried if a link has neither: it would be another model.
 
     Args:
         path: A URDF or MJCF file.
@@ -156,16 +156,24 @@ def run(
     bullet: Any = importlib.import_module("pybullet")
     client = bullet.connect(bullet.DIRECT)
     try:
+        outcome = EngineOutcome("pybullet", str(bullet.getAPIVersion(client)))
+        stated = bullet.URDF_USE_INERTIA_FROM_FILE
+        if path.suffix.lower() == ".urdf":
+            bodies = [bullet.loadURDF(str(path), useFixedBase=True, flags=stated, physicsClientId=client)]
+        else:
+            for flags in (stated, 0):
+                bodies = list(bullet.loadMJCF(str(path), flags=flags, physicsClientId=client))
+                outcome.unread = tuple(_without_inertia(bullet, client, bodies))
+                if not outcome.unread:
+                    break
+                bullet.resetSimulation(physicsClientId=client)
+            for body in bodies if not outcome.unread else ():
+                bullet.changeDynamics(body, -1, mass=0, physicsClientId=client)  # makes its base a fixed one
+        if outcome.unread:
+            return outcome
         bullet.setGravity(0, 0, -9.81, physicsClientId=client)
         bullet.setPhysicsEngineParameter(numSolverIterations=SOLVER_ITERATIONS, physicsClientId=client)
-        if path.suffix.lower() == ".urdf":
-            bodies = [bullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)]
-        else:
-            bodies = list(bullet.loadMJCF(str(path), physicsClientId=client))
-        outcome = EngineOutcome("pybullet", str(bullet.getAPIVersion(client)))
-        if path.suffix.lower() != ".urdf":
-            outcome.unread = tuple(_without_inertia(bullet, client, bodies))
-        return outcome if outcome.unread else _Trial(bullet, client, outcome, bodies, rest or {}, mimics or {}, opened).run()
+        return _Trial(bullet, client, outcome, bodies, rest or {}, mimics or {}, opened).run()
     finally:
         bullet.disconnect(client)
 

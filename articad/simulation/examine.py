@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from articad.assembly import Assembly
@@ -45,9 +47,10 @@ def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, se
     told = _told(path)
     outcomes = []
     for engine in engines:
-        opened = ("*",) if engine == "pybullet" and told.equalities else () if engine == "pybullet" else told.opened
-        outcome = try_out(engine, path, root=root, rest=told.rest, opened=opened, mimics=told.mimics, seconds=seconds)
-        outcome.open_loops = told.equalities if engine == "pybullet" and told.equalities else told.loops
+        alone = engine == "pybullet"  # it drives the tree of joints: parts of one body do not collide, and loops are left open
+        opened, mimics = () if alone else told.opened, {**told.mimics, **(told.couplings if alone else {})}
+        outcome = try_out(engine, path, root=root, rest=told.rest, opened=opened, mimics=mimics, seconds=seconds)
+        outcome.open_loops = told.loops + (told.equalities if alone else 0)
         outcomes.append(outcome)
     return SimulationVerdict(str(path), tuple(outcomes))
 
@@ -60,7 +63,8 @@ class _Told(NamedTuple):
         mimics: Leader, multiplier and offset of joints of a URDF that follow others.
         loops: Number of loops that a URDF leaves open.
         opened: Joints of these loops, and those coupled with them.
-        equalities: Number of equality constraints of an MJCF, which PyBullet leaves out.
+        equalities: Number of equality constraints of an MJCF but `couplings`; PyBullet leaves them out.
+        couplings: Leader, multiplier and offset of joints of an MJCF that an equality makes a linear function of another joint.
     """
 
     rest: dict[str, float]
@@ -68,6 +72,7 @@ class _Told(NamedTuple):
     loops: int = 0
     opened: tuple[str, ...] = ()
     equalities: int = 0
+    couplings: Mapping[str, tuple[str, float, float]] = MappingProxyType({})
 
 
 def _told(path: Path) -> _Told:
@@ -77,7 +82,8 @@ def _told(path: Path) -> _Told:
     except ReadError:
         return _Told({}, {})
     if path.suffix.lower() != ".urdf":
-        return _Told({}, {}, equalities=len(root.findall("equality/*")))
+        linear = _couplings(root)
+        return _Told({}, {}, equalities=len(root.findall("equality/*")) - len(linear), couplings=linear)
     mimics = _mimics(root)
     assembly = readable(path) if root.find("articad") is not None else None
     if assembly is None:
@@ -96,6 +102,17 @@ def _told(path: Path) -> _Told:
             if {name, follows.leader} & opened:
                 opened |= {name, follows.leader}
     return _Told(rest, mimics, len(mechanism.loop_joints), tuple(sorted(opened & rest.keys())))
+
+
+def _couplings(root: Any) -> dict[str, tuple[str, float, float]]:
+    """Return leader, multiplier and offset of the joints of an MJCF that follow others linearly, by equalities that state so."""
+    found = {}
+    for tie in root.iterfind("equality/joint"):
+        with contextlib.suppress(ValueError):  # not numbers: engines will report it
+            offset, ratio, *higher = [float(word) for word in tie.get("polycoef", "").split()] or [0.0, 0.0, 1.0]
+            if tie.get("joint2") and not any(higher) and tie.get("joint1", "") not in found:
+                found[tie.get("joint1", "")] = (tie.get("joint2"), ratio, offset)
+    return found
 
 
 def _mimics(root: Any) -> dict[str, tuple[str, float, float]]:

@@ -8,15 +8,17 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from lxml import etree
 
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.export.inertia import CARRIER_INERTIA_KG_M2, CARRIER_MASS_KG, Inertial, is_possible
-from articad.export.mjcf import write_mjcf
+from articad.export.lowering import lower
+from articad.export.mjcf import RESERVED, write_mjcf
 from articad.export.urdf import write_urdf
 from articad.geometry.mass import MassProperties
 from articad.geometry.shapes import box
-from tests.assemblies import all_joint_kinds, four_bar
+from tests.assemblies import all_joint_kinds, four_bar, random_tree
 
 sizes = st.floats(0.5, 500)
 points = st.lists(st.floats(-300, 300), min_size=3, max_size=3)
@@ -88,6 +90,77 @@ def test_the_nearest_possible_body_is_possible_and_no_other_body_changes(moments
     assert is_possible(found.mass, found.inertia)
     assert (found.mass, found.com.tolist()) == (odd.mass, odd.com.tolist())
     assert found.possible() is found
+
+
+EQUAL = [(1.0, 1.0, 2.0), (1.0, 2.0, 2.0), (3.0, 3.0, 3.0), (1.0, 1.0 + 1e-15, 2.0), (1e-12, 1.0, 1.0), (0.2, 0.5, 0.6)]
+
+
+@given(st.sampled_from(EQUAL), st.lists(st.floats(-4, 4), min_size=3, max_size=3))
+def test_principal_axes_and_moments_are_the_inertia_also_where_moments_are_equal(
+    moments: tuple[float, float, float], turn: list[float]
+) -> None:
+    R = SE3.exp([0, 0, 0, *turn]).rotation
+    inertia = (R * moments) @ R.T
+    inertia = (inertia + inertia.T) / 2
+    found, axes = Inertial(1.0, np.zeros(3), inertia).principal()
+
+    assert np.allclose((axes * found) @ axes.T, inertia, rtol=0, atol=1e-14)
+    assert np.allclose(axes.T @ axes, np.eye(3), rtol=0, atol=1e-14)
+    assert np.linalg.det(axes) > 0
+    assert sorted(found) == pytest.approx(sorted(moments), abs=1e-14)
+
+
+def test_axes_of_a_disk_turn_no_further_than_its_axis_does() -> None:
+    R = SE3.exp([0, 0, 0, 0.3, 0, 0]).rotation
+    found, axes = Inertial(1.0, np.zeros(3), (R * (1.0, 1.0, 2.0)) @ R.T).principal()
+
+    assert found == pytest.approx([1, 1, 2], abs=1e-15)
+    assert axes == pytest.approx(R, abs=1e-15)
+    diagonal = np.diag([0.3, 0.1, 0.2])
+    found, axes = Inertial(1.0, np.zeros(3), diagonal).principal()
+    assert found.tolist() == [0.3, 0.1, 0.2]
+    assert axes.tolist() == np.eye(3).tolist()
+
+
+@pytest.mark.engines
+@pytest.mark.parametrize("seed", range(4))
+def test_mujoco_and_bullet_read_the_inertia_of_every_link_from_mjcf(seed: int, tmp_path: Path) -> None:
+    import mujoco
+
+    assembly = random_tree(seed)
+    bundle = write_mjcf(assembly)
+    bundle.write(tmp_path)
+    path = str(tmp_path / bundle.main)
+    expected = {link.name: link.inertial for link in lower(assembly, RESERVED).links if link.inertial is not None}
+    assert len(expected) == 6
+
+    model = mujoco.MjModel.from_xml_path(path)
+    for name, inertial in expected.items():
+        body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
+        w, *xyz = model.body_iquat[body]
+        axes = SE3.from_quaternion([*xyz, w]).rotation
+        largest = np.abs(inertial.inertia).max()
+        assert model.body_mass[body] == pytest.approx(inertial.mass, rel=1e-15)
+        assert np.allclose((axes * model.body_inertia[body]) @ axes.T, inertial.inertia, rtol=0, atol=1e-12 * largest)
+
+    bullet = pytest.importorskip("pybullet", reason="PyBullet has no wheel for this Python")
+    client = bullet.connect(bullet.DIRECT)
+    found = {}
+    for robot in bullet.loadMJCF(path, flags=bullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=client):
+        for index in range(-1, bullet.getNumJoints(robot, physicsClientId=client)):
+            said = bullet.getBodyInfo(robot, client)[0] if index < 0 else bullet.getJointInfo(robot, index, physicsClientId=client)[12]
+            found[said.decode()] = bullet.getDynamicsInfo(robot, index, physicsClientId=client)[:5]
+    bullet.disconnect(client)
+    balls = etree.parse(path).xpath("//body[joint[@type='ball']]")  # PyBullet leaves them out, with what they carry
+    lost = {body.get("name") for ball in balls for body in ball.iter("body")}
+    assert expected.keys() - found.keys() == lost
+    for name in expected.keys() & found.keys():
+        inertial = expected[name]
+        mass, _, moments, com, turn = found[name]
+        axes, largest = SE3.from_quaternion(turn).rotation, np.abs(inertial.inertia).max()
+        assert mass == pytest.approx(inertial.mass, rel=1e-6)  # PyBullet keeps vectors in single precision
+        assert np.allclose(com, inertial.com, rtol=1e-6, atol=1e-7)
+        assert np.allclose((axes * moments) @ axes.T, inertial.inertia, rtol=0, atol=1e-6 * largest)
 
 
 KINDS = {"rod": (1.0, 0.0, 0.0), "plate": (1.0, 0.6, 0.0), "disk": (1.0, 1.0, 0.0), "thin": (1.0, 1e-13, 1e-15), "solid": (1.0, 0.5, 0.3)}

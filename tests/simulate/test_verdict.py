@@ -294,25 +294,45 @@ def test_bullet_holds_a_model_and_drives_its_joints(limits: str | None, span: tu
     assert outcome.speed_at_rest < 1e-6
 
 
+TURN = """<mujoco><compiler angle="radian" inertiafromgeom="false"/><worldbody><body name="base"><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><body name="arm">
+  <joint name="turn" type="hinge" axis="0 1 0" limited="true" range="-1 2"/>
+  <inertial pos="0 0 0.1" mass="1" {}/>{}</body></body></worldbody>{}</mujoco>"""
+
+
 def test_a_link_whose_inertia_bullet_does_not_read_is_told_and_nothing_is_tried(tmp_path: Path) -> None:
     """PyBullet ignores `fullinertia`; a box that states its type gives the link an inertia."""
     pytest.importorskip("pybullet", reason="PyBullet has no wheel for this Python")
     path = tmp_path / "model.xml"
-    text = """<mujoco><compiler angle="radian"/><worldbody><body name="base"><body name="arm">
-      <joint name="turn" type="hinge" axis="0 1 0" limited="true" range="-1 1"/>
-      <inertial pos="0 0 0" mass="1" fullinertia="0.01 0.01 0.01 0 0 0"/>{}</body></body></worldbody></mujoco>"""
 
-    path.write_text(text.format(""))
+    path.write_text(TURN.format('fullinertia="0.01 0.01 0.01 0 0 0"', "", ""))
     verdict = simulate_file(path)
     assert [finding.code for finding in verdict.findings] == ["I_SIM_UNREAD"]
     assert "PyBullet reads no inertia of arm" in str(verdict.findings)
     assert verdict.ok  # MuJoCo tried it
     assert not simulate_file(path, engines=("pybullet",)).ok
 
-    path.write_text(text.format('<geom type="box" size="0.1 0.1 0.1"/>'))
+    path.write_text(TURN.format('fullinertia="0.01 0.01 0.01 0 0 0"', '<geom type="box" size="0.1 0.1 0.1"/>', ""))
     (outcome,) = simulate_file(path, engines=("pybullet",)).outcomes
     assert outcome.unread == ()
     assert len(outcome.reaches) == 1
+
+
+def test_bullet_drives_the_range_of_an_mjcf_with_its_couplings_and_counts_the_loops_that_it_leaves_open(tmp_path: Path) -> None:
+    pytest.importorskip("pybullet", reason="PyBullet has no wheel for this Python")
+    path = tmp_path / "model.xml"
+    geared = """<body name="wheel"><joint name="gear" type="hinge" axis="0 1 0" limited="true" range="-4 2"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/><site name="a"/></body>"""
+    ties = """<equality><joint joint1="gear" joint2="turn" polycoef="0 -2 0 0 0"/><connect site1="a" site2="b"/></equality>"""
+    path.write_text(TURN.format('diaginertia="0.01 0.01 0.01"', geared + '<site name="b"/>', ties))
+
+    (outcome,) = simulate_file(path, engines=("pybullet",)).outcomes
+
+    assert outcome.unread == ()
+    assert outcome.open_loops == 1
+    (reach,) = outcome.reaches  # the gear follows
+    assert reach.joint == "turn"
+    assert (reach.lower, reach.upper) == (-1, 2)
+    assert reach.share > 0.999
 
 
 def test_the_film_follows_what_the_engine_says(tmp_path: Path) -> None:
