@@ -324,7 +324,7 @@ and runs the judges on the files. The references of four hard tasks are examples
 "100 % of 4" means: 4 joints were driven, and the one that covered the smallest share of its range covered 100 %. The range of a follower in a loop is
 the one that kinematics computes for it. `articad sim` requires 99 %.
 
-- *loops open*: URDF has no closed loops, and PyBullet leaves out the equality constraints of MJCF. "3 of open loops not driven" counts the joints whose motion
+- *loops open*: URDF has no closed loops, and PyBullet leaves out those of MJCF. "3 of open loops not driven" counts the joints whose motion
   such a loop would determine.
 - Newton runs its MuJoCo solver on the processor. Its readers, mimics, loops and contacts are its own. Newton 1.8 closes a loop correctly
   only if it is closed where all joints are zero. From USD it reads both frames of a loop joint, but its solver computes the anchor on the
@@ -334,9 +334,8 @@ the one that kinematics computes for it. `articad sim` requires 99 %.
 - An empty cell, or a model that is not listed, was not judged. *(earlier)*: by an earlier version of the judge's program, or on an earlier export.
 - Drake and SAPIEN are not in the table: `pytest -m engines_all tests/export/test_elsewhere.py` loads URDFs of all kinds of joints in both, and MJCF and SDF in
   Drake, in an environment of their own, and compares the poses of all links.
-- PyBullet does not collide parts of one body unless it is asked to, so its rows do not test collision shapes. From MJCF it reads neither the
-  type of a geom from its class nor `fullinertia`, so links whose shapes are all meshes have no inertia there: such a file is not judged. Nor does it read a
-  joint's range without `limited`: hinges of an MJCF are driven over one turn.
+- PyBullet does not collide parts of one body unless it is asked to, so its rows do not test collision shapes. It simulates the inertias and ranges that
+  the file states. It has no couplings, so followers are driven with their leaders. From MJCF it leaves out bodies on ball joints, with what they carry.
 """
 
 
