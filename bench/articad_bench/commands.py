@@ -216,7 +216,7 @@ def _on_data(options: argparse.Namespace, terminal: Terminal) -> Report:
     with terminal.progress("Samples") as tell:
 
         def told(row: Sampled) -> None:
-            tell(row.name, row.error or "scored")
+            tell(row.name, row.left_out or row.error or "scored")
 
         if options.action == "shapes":
             report = score_shapes(chosen(shapes_in(options.data)), models, told=told)

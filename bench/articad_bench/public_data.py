@@ -157,8 +157,15 @@ def objects_in(folder: str | Path) -> list[ObjectSample]:
 
 
 def object_of(assembly: Assembly) -> TrueObject:
-    """Return an assembly in the form of a data set's object: each joint moves its side away from the ground, and all that hangs from it."""
+    """Return an assembly in the form of a data set's object: each joint moves its side away from the ground, and all that hangs from it.
+
+    Raises:
+        ReadError: If no part has a shape.
+    """
     subject = Subject(assembly)
+    if not subject.shaped:
+        message = "No part of it has a shape."
+        raise ReadError(f"{assembly.name}: {message} Look for its meshes.", path=assembly.name)
     placed = {name: part.mesh.transformed(subject.rest[name]) for name, part in assembly.parts.items() if part.mesh is not None}
     joints = [_moving(subject, joint, placed) for joint in assembly.joints if joint.type is not JointType.FIXED]
     return TrueObject(merged(list(placed.values())), tuple(joint for joint in joints if joint is not None))
@@ -191,7 +198,10 @@ def _reading(read: Callable[[Path], TrueObject], file: Path) -> Callable[[], Tru
 
 
 def _mobility(file: Path) -> TrueObject:
-    return object_of(subject_of(file).assembly)
+    assembly = subject_of(file).assembly
+    if missing := [finding.message for finding in assembly.findings if finding.code == "W_IMPORT_MESH"]:
+        raise _refused(file, f"It names meshes that are not there: {missing[0]}")
+    return object_of(assembly)
 
 
 def _acd(file: Path) -> TrueObject:

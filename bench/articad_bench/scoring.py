@@ -93,7 +93,7 @@ def _solid(assembly: Assembly) -> Assembly:
     if all(part is assembly.parts[part.name] for part in parts):
         return assembly
     mechanism = assembly.mechanism
-    return Assembly.from_parts(
+    solid = Assembly.from_parts(
         assembly.name,
         parts=parts,
         joints=assembly.joints,
@@ -103,3 +103,4 @@ def _solid(assembly: Assembly) -> Assembly:
         waivers=assembly.waivers,
         T_ground=mechanism.T_ground,
     )
+    return replace(solid, findings=assembly.findings)

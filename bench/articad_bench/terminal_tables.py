@@ -62,10 +62,15 @@ def print_data(report: Report, terminal: Terminal) -> Report:
     names = list(report["ours"])
     lines = [(who, how) for who in ("ours", "floor", "box") for how in ("mean", "median")]
     rows = [(f"{who}, {how}", *(told(report[who][name][how]) for name in names)) for who, how in lines]
+    for who in ("ours", "floor", "box"):
+        spreads = [report[who][name]["spread"] for name in names]
+        rows.append((f"{who}, ± over {len(report['seeds'])} seeds", *("–" if spread is None else f"{spread:.2g}" for spread in spreads)))
     terminal.table(["", *(name.replace("_", " ") for name in names)], rows)
     terminal.say(f"{report['samples']} samples; compile rate: {told(report['made'], percent=True)}")
     if report["calls"]["n"]:
         terminal.say(effort(report))
+    for row in report["left_out"]:
+        terminal.say(f"{row['name']} is left out: {row['error']}")
     for row in report["rows"]:
         if row["error"]:
             terminal.say(f"{row['name']}: {row['error']}")
