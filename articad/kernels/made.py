@@ -2,16 +2,20 @@
 
 A dimension that is named after a connector makes a feature there: `<connector>_pin`, `_bar_x` and `_bar_y`, `_ball` add material,
 `_bore`, `_slot_x` and `_slot_y`, `_socket` cut it. Sizes are diameters and widths [mm]; a pin or bar is `<connector>_length` long from the
-connector's origin along its z, a bore or slot `<connector>_depth` deep, or through.
+connector's origin along its z, a bore or slot `<connector>_depth` deep, or through. A fork is cut out over `_gap` along z within `_reach` of the
+axis, and its pin spans it over `_span`, both centred on the connector; a shaft of `_shaft` has a groove of `_width` down to `_groove`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any, Final
 
 THROUGH: Final = 1e4  # mm to both sides of the connector
 """Half the length of a cutter that goes through the whole part."""
+BEYOND: Final = 0.5
+"""How far the cutter of a groove stands out of its shaft [mm]."""
 
 
 def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
@@ -23,25 +27,45 @@ def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
     """
     import build123d as cad  # noqa: PLC0415 - a traced run replaces the module
 
-    sizes, cutters = part.dimensions, []
-    for name, frame in part.connectors.items():
-        place = cad.Plane(frame.o, x_dir=frame.x, z_dir=frame.z)
-        length, depth = sizes.get(f"{name}_length"), sizes.get(f"{name}_depth")
-        if f"{name}_pin" in sizes:
-            shape = shape + place * _rod(cad, sizes[f"{name}_pin"], length)
-        if f"{name}_bar_x" in sizes:
-            shape = shape + place * _bar(cad, sizes[f"{name}_bar_x"], sizes[f"{name}_bar_y"], length)
-        if f"{name}_ball" in sizes:
-            shape = shape + place * cad.Sphere(sizes[f"{name}_ball"] / 2)
-        if f"{name}_bore" in sizes:
-            cutters.append(place * _rod(cad, sizes[f"{name}_bore"], depth))
-        if f"{name}_slot_x" in sizes:
-            cutters.append(place * _bar(cad, sizes[f"{name}_slot_x"], sizes[f"{name}_slot_y"], depth))
-        if f"{name}_socket" in sizes:
-            cutters.append(place * cad.Sphere(sizes[f"{name}_socket"] / 2))
-    for cutter in cutters:  # last, so that no pin fills a bore
-        shape = shape - cutter
+    sizes = part.dimensions
+    places = {name: cad.Plane(frame.o, x_dir=frame.x, z_dir=frame.z) for name, frame in part.connectors.items()}
+    for name, place in places.items():  # first, so that no fork loses its pin
+        if f"{name}_gap" in sizes:
+            shape = shape - place * cad.Cylinder(sizes[f"{name}_reach"], sizes[f"{name}_gap"])
+    for name, place in places.items():
+        for body in _inner(cad, sizes, name):
+            shape = shape + place * body
+    for name, place in places.items():  # last, so that no pin fills a bore
+        for cutter in _outer(cad, sizes, name):
+            shape = shape - place * cutter
     return shape, part.connectors
+
+
+def _inner(cad: Any, sizes: Any, name: str) -> Iterator[Any]:
+    """Yield what the joint at a connector adds to the part, in the connector's frame."""
+    length = sizes.get(f"{name}_length")
+    if f"{name}_span" in sizes:
+        yield cad.Cylinder(sizes[f"{name}_pin"] / 2, sizes[f"{name}_span"])
+    elif f"{name}_pin" in sizes:
+        yield _rod(cad, sizes[f"{name}_pin"], length)
+    if f"{name}_bar_x" in sizes:
+        yield _bar(cad, sizes[f"{name}_bar_x"], sizes[f"{name}_bar_y"], length)
+    if f"{name}_ball" in sizes:
+        yield cad.Sphere(sizes[f"{name}_ball"] / 2)
+
+
+def _outer(cad: Any, sizes: Any, name: str) -> Iterator[Any]:
+    """Yield what the joint at a connector cuts from the part, in the connector's frame."""
+    depth = sizes.get(f"{name}_depth")
+    if f"{name}_groove" in sizes:
+        ring = cad.Cylinder(sizes[f"{name}_shaft"] / 2 + BEYOND, sizes[f"{name}_width"])
+        yield ring - cad.Cylinder(sizes[f"{name}_groove"] / 2, 2 * sizes[f"{name}_width"])
+    if f"{name}_bore" in sizes:
+        yield _rod(cad, sizes[f"{name}_bore"], depth)
+    if f"{name}_slot_x" in sizes:
+        yield _bar(cad, sizes[f"{name}_slot_x"], sizes[f"{name}_slot_y"], depth)
+    if f"{name}_socket" in sizes:
+        yield cad.Sphere(sizes[f"{name}_socket"] / 2)
 
 
 def _rod(cad: Any, diameter: Any, length: Any) -> Any:

@@ -135,14 +135,16 @@ class _Joints:
 
     def place(self) -> None:
         """Write out every joint, those that others derive from first."""
-        for joint in sorted(self.joints.values(), key=lambda joint: "derive" in joint):
+        for joint in sorted(self.joints.values(), key=lambda joint: ("derive" in joint, isinstance(joint.get("at"), str))):
             if "derive" in joint:
                 self._derived(joint)
                 continue
             if joint.get("type") in STANDARD:
                 self._standard(joint)
-            frame = _frame(joint.pop("at")) if "at" in joint and _frame(joint["at"]) is not None else None
+            stated = joint.get("at")
+            frame = self._places.get(stated) if isinstance(stated, str) else _frame(stated)
             if frame is not None:
+                joint.pop("at")
                 self._places[joint["name"]] = frame
                 for side in ("parent", "child"):
                     self._attach(joint, side, frame)
@@ -167,37 +169,55 @@ class _Joints:
         joint[side] = f"{name}.{joint['name']}"
 
     def _derived(self, joint: Json) -> None:
-        """Name the connectors of a derived joint: its child's has the source's name; its parent's is the image of the source's place."""
+        """Name the connectors of a derived joint: a copy has its source's; a part of its own gets one at the image of the source's place."""
         stated = joint["derive"]
         source = self.joints.get(str(stated.get("from"))) if isinstance(stated, dict) else None
-        if source is None or not is_name(str(joint.get("child", "."))):
+        if source is None:
             return
-        held = str(source.get("child", "")).rpartition(".")[2]
-        image = self.parts.get(joint["child"], {}).get("derive")
-        joint["child"] = f"{joint['child']}.{held}"
-        parent = self.parts.get(str(joint.get("parent")))
-        if parent is None:
-            return
-        if "derive" in parent:
-            joint["parent"] = f"{joint['parent']}.{str(source.get('parent', '')).rpartition('.')[2]}"
-            return
-        frame = _image(self._places.get(str(source["name"])), image)
-        if frame is not None:
-            parent["connectors"].append({"name": joint["name"], "frame": "assembly", "label": ""} | frame)
-            joint["parent"] = f"{joint['parent']}.{joint['name']}"
-            self._places[joint["name"]] = frame
-            self._repeat(source, str(joint["name"]), parent)
+        named = {side: self.parts.get(str(joint.get(side)).partition(".")[0], {}) for side in ("parent", "child")}
+        copies = [part["derive"] for part in (named["child"], named["parent"]) if "derive" in part]
+        frame = _image(self._places.get(str(source["name"])), copies[0]) if copies else None
+        for side, part in named.items():
+            if not is_name(str(joint.get(side, "."))):  # names its connector
+                continue
+            if "derive" in part or not part:  # not in the plan by this name: a copy of a pattern
+                joint[side] = f"{joint[side]}.{str(source.get(side, '')).rpartition('.')[2]}"
+            elif frame is not None:
+                self._attach(joint, side, frame)
+                self._places[joint["name"]] = frame
+                self._repeat(source, side, str(joint["name"]), part)
+                if side == "child":  # then it is no image for the plan, and is written in full
+                    _write_out(joint, source)
 
-    def _repeat(self, source: Json, name: str, parent: Json) -> None:
-        """Give a parent the dimensions of a standard joint once more, for the image of that joint."""
-        first = str(source.get("parent", "")).rpartition(".")[2]
-        held = parent.get("dimensions")
-        if isinstance(held, dict):
-            keys = [key for key in held if any(key == f"{first}_{word}" for word in FEATURES)]
-            held.update({key.replace(first, name, 1): held[key] for key in keys})
+    def _repeat(self, source: Json, side: str, name: str, part: Json) -> None:
+        """Give a part the dimensions of a standard joint that the source's part has on the same side, for the image of that joint."""
+        first, _, connector = str(source.get(side, "")).partition(".")
+        held, own = self.parts.get(first, {}).get("dimensions"), part.setdefault("dimensions", {})
+        if isinstance(held, dict) and isinstance(own, dict):
+            keys = [key for key in held if any(key == f"{connector}_{word}" for word in FEATURES)]
+            own.update({key.replace(connector, name, 1): held[key] for key in keys})
 
 
-FEATURES: Final = ("pin", "bore", "length", "depth", "bar_x", "bar_y", "slot_x", "slot_y", "ball", "socket")
+def _write_out(joint: Json, source: Json) -> None:
+    """Replace a derived joint by one with the source's fields but those that it states; a mirror image turns the other way."""
+    turned = joint["derive"].get("op") == "mirror"
+    if turned and source["type"] not in ("fixed", "revolute", "slider"):
+        return  # stays derived, and the plan's check refuses it
+    image = copy.deepcopy(source)
+    if turned and source["type"] == "revolute":
+        if isinstance(limits := image.get("angle_deg"), list):
+            image["angle_deg"] = [_negative(value) for value in reversed(limits)]
+        if "rest_deg" in image:
+            image["rest_deg"] = _negative(image["rest_deg"])
+    own = {key: value for key, value in joint.items() if key != "derive"}
+    joint.clear()
+    joint.update(image | own)
+
+
+FEATURES: Final = (
+    *("pin", "bore", "length", "depth", "span", "gap", "reach", "groove", "width", "shaft"),
+    *("bar_x", "bar_y", "slot_x", "slot_y", "ball", "socket"),
+)
 
 
 def _image(frame: Json | None, derive: Any) -> Json | None:

@@ -10,7 +10,14 @@ from typing import Any, Final
 
 from articad.aliases import Json
 
-STANDARD: Final[Mapping[str, str]] = {"hinge": "revolute", "dowel": "fixed", "drawer_slide": "slider", "ball_socket": "ball"}
+STANDARD: Final[Mapping[str, str]] = {
+    "hinge": "revolute",
+    "pin_in_clevis": "revolute",
+    "dowel": "fixed",
+    "snap_ring": "fixed",
+    "drawer_slide": "slider",
+    "ball_socket": "ball",
+}
 """The plan's joint type by standard joint."""
 
 CLEARANCE_MM: Final = 0.15
@@ -21,8 +28,11 @@ def made_of(joint: Json) -> dict[str, dict[str, Any]]:
     """Turn a standard joint into a joint of the plan, in place; return the dimensions of its features by side, "parent" and "child".
 
     The joint may have `pin_mm` (hinge, dowel: diameter), `bar_mm` [x, y] (drawer_slide) or `ball_mm` (ball_socket: diameter), `length_mm`
-    of the pin or bar from the joint's origin along its +z, `depth_mm` of the hole (without it, the hole goes through), `clearance_mm`, and
+    of the pin or bar from the joint's origin along its +z (0: the part has it already), `depth_mm` of the hole (without it, the hole goes through), `clearance_mm`, and
     `pin_on`: the side that has the pin, bar or ball ("parent").
+
+    A `pin_in_clevis` has a pin of `length_mm` across a fork, centred on the joint, and an eye of `eye_mm` along z between the cheeks; the fork is
+    cut out within `reach_mm` of the axis. A `snap_ring` sits in a groove of `groove_mm` [diameter, width] in a shaft of `shaft_mm`.
     """
     kind = joint["type"]
     joint["type"] = STANDARD[kind]
@@ -36,15 +46,24 @@ def made_of(joint: Json) -> dict[str, dict[str, Any]]:
     if kind == "drawer_slide" and isinstance(size, list) and len(size) == 2:
         pin = {"bar_x": size[0], "bar_y": size[1]}
         hole = {"slot_x": _wider(size[0], clearance), "slot_y": _wider(size[1], clearance)}
+    elif kind == "pin_in_clevis":
+        pin = {"pin": size, "span": length, "gap": _wider(joint.pop("eye_mm", None), clearance), "reach": joint.pop("reach_mm", None)}
+        hole, length = {"bore": _wider(size, clearance)}, None
+    elif kind == "snap_ring":
+        groove = joint.pop("groove_mm", None)
+        diameter, width = groove if isinstance(groove, list) and len(groove) == 2 else (groove, groove)
+        pin, hole, length = {"groove": diameter, "width": width, "shaft": joint.pop("shaft_mm", None)}, {"bore": diameter}, None
     elif kind == "ball_socket":
         pin, hole, length = {"ball": size}, {"socket": _wider(size, clearance)}, None
     else:
         pin, hole = {"pin": size}, {"bore": _wider(size, clearance)}
-    if length is not None:
+    if length == 0:  # the part has the pin or bar already
+        pin = {}
+    elif length is not None:
         pin["length"] = length
     if depth is not None:
         hole["depth"] = depth
-    if kind in ("hinge", "drawer_slide") and clearance:
+    if kind in ("hinge", "pin_in_clevis", "drawer_slide") and clearance:
         joint.setdefault("fit", {"gap_mm": [f"({clearance})/2", f"({clearance})*3/2"], "contact": "allowed"})
     return {inner: pin, outer: hole}
 

@@ -6,7 +6,6 @@ import copy
 import json
 import math
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -16,6 +15,7 @@ from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.plan.short import expanded
+from articad.plan.standard_joints import STANDARD
 from tests.plan.samples import FILES, Json, document
 
 PRODUCTS = Path(__file__).parents[2] / "benchmarks" / "products"
@@ -102,25 +102,117 @@ def test_a_hinge_adds_its_pin_and_its_bore_with_their_clearance() -> None:
     assert [row.to_json()["play_mm"] for row in checks.fits] == pytest.approx([0.15, 0.15], abs=1e-3)
 
 
-@pytest.mark.parametrize("kind", ["dowel", "drawer_slide", "ball_socket"])
-def test_other_standard_joints_order_features_that_fit(kind: str) -> None:
-    size: tuple[str, Any] = {"dowel": ("pin_mm", 8), "drawer_slide": ("bar_mm", [8, 5]), "ball_socket": ("ball_mm", 8)}[kind]
-    limits: dict[str, Json] = {"dowel": {}, "drawer_slide": {"travel_mm": [0, 9]}, "ball_socket": {"cone_deg": 20}}
-    plan: Json = copy.deepcopy(GATE) | {
-        "joints": {"j": {"type": kind, "parent": "post", "child": "leaf", "at": [0, 0, 9], size[0]: size[1]}}
-    }
-    plan["joints"]["j"] |= limits[kind] | ({"length_mm": 12} if kind != "ball_socket" else {})
+STANDARD_JOINTS: dict[str, tuple[Json, Json, Json]] = {
+    "dowel": ({"pin_mm": 8, "length_mm": 12}, {"j_pin": 8, "j_length": 12}, {"j_bore": 8}),
+    "hinge": ({"pin_mm": 8, "length_mm": 0, "angle_deg": [0, 9]}, {}, {"j_bore": 8.3}),  # the part has its pin already
+    "drawer_slide": (
+        {"bar_mm": [8, 5], "length_mm": 12, "travel_mm": [0, 9]},
+        {"j_bar_x": 8, "j_bar_y": 5, "j_length": 12},
+        {"j_slot_x": 8.3, "j_slot_y": 5.3},
+    ),
+    "ball_socket": ({"ball_mm": 8, "cone_deg": 20}, {"j_ball": 8}, {"j_socket": 8.3}),
+    "pin_in_clevis": (
+        {"pin_mm": 8, "length_mm": 30, "eye_mm": 10, "reach_mm": 14, "angle_deg": [0, 9]},
+        {"j_pin": 8, "j_span": 30, "j_gap": 10.3, "j_reach": 14},
+        {"j_bore": 8.3},
+    ),
+    "snap_ring": ({"shaft_mm": 10, "groove_mm": [9.6, 1.1]}, {"j_shaft": 10, "j_groove": 9.6, "j_width": 1.1}, {"j_bore": 9.6}),
+}
+
+
+def test_every_standard_joint_has_its_features_tested() -> None:
+    assert set(STANDARD_JOINTS) == set(STANDARD)
+
+
+@pytest.mark.parametrize("kind", STANDARD_JOINTS)
+def test_standard_joints_order_features_that_fit(kind: str) -> None:
+    stated, inner, outer = STANDARD_JOINTS[kind]
+    plan: Json = copy.deepcopy(GATE) | {"joints": {"j": {"type": kind, "parent": "post", "child": "leaf", "at": [0, 0, 9], **stated}}}
     del plan["parts"]["twin"]
     long = expanded(plan)
     dimensions = {part["name"]: {key: value for key, value in part["dimensions"].items() if key.startswith("j_")} for part in long["parts"]}
-    assert (
-        dimensions
-        == {
-            "dowel": {"post": {"j_pin": 8, "j_length": 12}, "leaf": {"j_bore": 8}},
-            "drawer_slide": {"post": {"j_bar_x": 8, "j_bar_y": 5, "j_length": 12}, "leaf": {"j_slot_x": 8.3, "j_slot_y": 5.3}},
-            "ball_socket": {"post": {"j_ball": 8}, "leaf": {"j_socket": 8.3}},
-        }[kind]
-    )
+    assert dimensions == {"post": inner, "leaf": outer}
+    (joint,) = long["joints"]
+    assert joint["type"] == STANDARD[kind]
+    assert {"bar_mm", "pin_mm", "ball_mm", "eye_mm", "reach_mm", "shaft_mm", "groove_mm", "length_mm"}.isdisjoint(joint)
+
+
+CLEVIS: Json = {
+    "schema": "articad.short/1",
+    "name": "clevis",
+    "ground": "fork",
+    "freedoms": 1,
+    "parts": {
+        "fork": {"material": "steel", "dimensions": "size = 30"},
+        "eye": {"material": "steel", "dimensions": "size = 20", "rest_pose": {}},
+        "ring": {"material": "steel", "dimensions": "size = 3", "rest_pose": {}},
+    },
+    "joints": {
+        "turn": {"type": "pin_in_clevis", "parent": "fork", "child": "eye", "at": [0, 0, 0], "pin_mm": 8, "length_mm": 40, "eye_mm": 10}
+        | {"reach_mm": 16, "angle_deg": [-40, 40]},
+        "clip": {"type": "snap_ring", "parent": "fork", "child": "ring", "at": [0, 0, 18], "shaft_mm": 8, "groove_mm": [7.6, 0.9]},
+    },
+}
+PIECES = {
+    "fork": "Pos(-15) * Box(d['size'], 20, d['size'])",
+    "eye": "Cylinder(d['size'] / 2, 10) + Pos(15) * Box(d['size'], 10, 10)",
+    "ring": "Pos(0, 0, 18) * Cylinder(2 * d['size'], 0.8)",
+}
+
+
+def test_a_clevis_clears_its_eye_and_a_snap_ring_sits_in_its_groove() -> None:
+    """Volumes by closed formulas: the fork less half a disc of 16 mm cut off at its sides, plus the pin outside of the cheeks, less the groove."""
+    scripts = {
+        name: f"from build123d import *\ndef build(part):\n    d = part.dimensions\n    return part.made({shape})\n".encode()
+        for name, shape in PIECES.items()
+    }
+    built = Assembly.from_plan(AssemblyPlan.from_json(CLEVIS), scripts)
+    checks = built.check()
+    assert checks.ok, str(checks.findings)
+    assert [row.to_json()["play_mm"] for row in checks.fits] == pytest.approx([0.15], abs=1e-3)
+    assert built.certify(["turn"]).ok
+    half = 10.0  # of the width of the fork, beyond which there is nothing to cut
+    segment = half * math.sqrt(16**2 - half**2) + 16**2 * math.asin(half / 16)
+    pin = math.pi * 4**2 * 40 - math.pi * 4**2 / 2 * (30 - 10.3)  # half of the pin is inside of both cheeks
+    groove = math.pi * (4**2 - 3.8**2) * 0.9
+    fork = 30 * 20 * 30 - segment * 10.3 + pin - groove
+    assert mass_of(built, "fork").mass == pytest.approx(fork * 7850e-9, rel=1e-6)
+
+
+def test_a_joint_may_stand_where_another_joint_is() -> None:
+    plan = copy.deepcopy(GATE)
+    plan["parts"]["knob"] = {"material": "oak", "dimensions": "size = 9", "rest_pose": {"at": [0, 0, 20]}}
+    plan["joints"] = {"grip": {"type": "fixed", "parent": "leaf", "child": "knob", "at": "swing"}} | plan["joints"]
+    resolved = resolve(AssemblyPlan.from_json(plan))
+    knob = resolved.parts["knob"]
+    assert knob.T_rest.apply([knob.connectors["grip"].frame.translation])[0] == pytest.approx((-2, 0, 10))
+
+
+@pytest.mark.parametrize("copied", ["parent", "child", "child of its own name"])
+def test_a_derived_joint_of_a_part_that_is_no_copy_gets_the_image_of_the_place_and_of_the_features(copied: str) -> None:
+    """A gate whose mirror image has a post or a leaf of its own; a mirrored joint turns the other way."""
+    plan = copy.deepcopy(GATE)
+    own = {"material": "oak", "dimensions": "width = 20, height = 8", "rest_pose": {"at": [60, 0, 10.2]}}
+    if copied == "parent":  # another leaf on the image of a bracket
+        plan["parts"] |= {"bracket": own | {"rest_pose": {"at": [0, 0, 1]}}, "leaf_r": own}
+        plan["parts"]["bracket_r"] = {"derive": plan["parts"]["twin"]["derive"] | {"from": "bracket"}}
+        plan["joints"]["swing"]["parent"] = "bracket"
+        plan["joints"]["hold"] = {"type": "fixed", "parent": "post", "child": "bracket", "at": [0, 0, 5]}
+        plan["joints"]["hold_r"] = {"derive": {"from": "hold", "op": "mirror"}, "parent": "post", "child": "bracket_r"}
+        plan["joints"]["other"] |= {"parent": "bracket_r", "child": "leaf_r"}
+        del plan["parts"]["twin"]
+        owner, feature = "leaf_r", "other_bore"
+    else:
+        owner, feature = "post", "other_pin"
+        if copied != "child":
+            plan["joints"]["other"]["child"] = "twin.swing"
+    resolved = resolve(AssemblyPlan.from_json(plan))
+    held = resolved.parts[owner]
+    assert feature in held.dimensions
+    assert held.T_rest.apply([held.connectors["other"].frame.translation])[0] == pytest.approx((62, 0, 10))
+    (other,) = next(joint.columns for joint in resolved.joints if joint.name == "other")
+    assert [math.degrees(other.lower), math.degrees(other.upper)] == pytest.approx([-90, 0])
+    assert not [finding for finding in check_plan(AssemblyPlan.from_json(plan)) if finding.severity == "error"]
 
 
 def test_what_is_wrong_in_a_short_plan_is_reported_at_its_address() -> None:
