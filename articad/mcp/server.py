@@ -10,8 +10,9 @@ from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
+from mcp.server.apps import APP_MIME_TYPE, Apps
 from mcp.server.mcpserver import Context, Image, MCPServer
-from mcp.server.mcpserver.exceptions import ToolError
+from mcp.server.mcpserver.exceptions import ResourceError, ToolError
 from pydantic import Field
 
 from articad import __version__
@@ -37,6 +38,11 @@ _LOOK_S: Final = 300.0
 _GRACE_S: Final = 60.0  # beyond a certificate's own budget: for reading, and for the claim in progress
 _PICTURES: Final = 4  # of one answer
 _PIXELS: Final = 320  # a host charges for the area: a third of 512 x 512, and joints can still be told apart
+
+_SHOWING: Final = "render"  # the tool beside whose pictures a host that knows MCP Apps shows the design's page
+_SHELL: Final = "ui://articad/page.html"
+_PAGES: Final = "ui://articad/designs/{design}"
+_SHELL_FILE: Final = Path(__file__).with_name("page.html")
 
 Design = Annotated[str, Field(description="name of a design: a folder under the root")]
 Detail = Annotated[bool, Field(description="the whole report, up to 60 kB")]
@@ -345,15 +351,21 @@ def make_server(root: str | Path) -> MCPServer:
     Args:
         root: The folder of designs; made if it is not there.
     """
-    server = MCPServer("articad", version=__version__, instructions=section("The loop"), log_level="WARNING")
-    tools = Tools(root)
+    tools, apps = Tools(root), Apps()
+    apps.add_html_resource(_SHELL, _SHELL_FILE.read_text(encoding="utf-8"), title="Page of a design")
     for name, method in inspect.getmembers(tools, inspect.iscoroutinefunction):
-        if not name.startswith("_"):
+        if name == _SHOWING:
+            apps.tool(resource_uri=_SHELL, structured_output=False)(_told(method))
+    server = MCPServer("articad", version=__version__, instructions=section("The loop"), log_level="WARNING", extensions=[apps])
+    for name, method in inspect.getmembers(tools, inspect.iscoroutinefunction):
+        if not name.startswith("_") and name != _SHOWING:
             server.tool(structured_output=False)(_told(method))
+
+    server.resource(_PAGES, name="page", mime_type=APP_MIME_TYPE)(_told(tools.bench.page, ResourceError))
     return server
 
 
-def _told(method: Tool) -> Tool:
+def _told(method: Tool, refusal: type[Exception] = ToolError) -> Tool:
     """Convert the error of a refused call to one message for the agent."""
 
     @wraps(method)
@@ -361,9 +373,9 @@ def _told(method: Tool) -> Tool:
         try:
             answer = await method(*arguments, **named)
         except ArticadError as error:
-            raise ToolError("\n".join(map(str, error.findings)) or str(error)) from error
+            raise refusal("\n".join(map(str, error.findings)) or str(error)) from error
         except OSError as error:
-            raise ToolError(f"{error.filename or 'A file'} cannot be read or written: {error.strerror}.") from None
+            raise refusal(f"{error.filename or 'A file'} cannot be read or written: {error.strerror}.") from None
         return answers.compact(answer) if isinstance(answer, dict) else answer
 
     return told

@@ -19,7 +19,7 @@ from articad.errors import ReadError
 from articad.files import RECORD_BYTES, ROOT_VARIABLE, is_file, read_file
 from articad.plan.amending import amended
 from articad.plan.short import expanded, is_short
-from articad.processes import launcher
+from articad.processes import launcher, scratch
 from articad.runs.run import write_atomically
 
 Tell = Callable[[float, str], Awaitable[None]]
@@ -31,6 +31,8 @@ BRIEF_BYTES: Final = 6_000  # of an answer without details: a page of text
 FULL_BYTES: Final = 60_000
 SHOWN_FINDINGS: Final = 12
 _FILE_BYTES: Final = 2**32  # of each file that a command writes
+_PAGE_BYTES: Final = 64_000_000
+_PAGE_S: Final = 300.0
 _TOLD_EVERY_S: Final = 2.0
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}\Z")
 _FINDING_KEYS: Final = ("code", "where", "message", "hint", "route", "cause")
@@ -163,6 +165,18 @@ class Workbench:
         return path
 
     # ------------------------------------------------------------------ work
+
+    async def page(self, design: str) -> str:
+        """Return the page of a built design: its model with a slider for each driver, checks and files.
+
+        Raises:
+            ReadError: If there is no such design.
+        """
+        self.design(design)
+        with scratch.folder("page") as folder:
+            file = Path(folder) / "page.html"
+            await self.run("show", "--no-browser", f"--out={file}", on=[str(self.target(design))], seconds=_PAGE_S)
+            return read_file(file, _PAGE_BYTES).decode()
 
     async def run(self, command: str, *arguments: str, on: Sequence[str] = (), seconds: float, tell: Tell | None = None) -> Json:
         """Run a command of `articad` and return its report.

@@ -184,6 +184,10 @@ def test_a_long_certificate_can_be_cancelled_and_leaves_no_process(tmp_path: Pat
 
     async def work(agent: Agent) -> None:
         assert (await agent.call("build", design="leg"))["ok"]
+        (page,) = (await agent.client.read_resource("ui://articad/designs/leg")).contents
+        assert page.mime_type == "text/html;profile=mcp-app"
+        assert "jansen_leg" in page.text
+        assert page.text.startswith("<!doctype html>")
         with anyio.move_on_after(4) as scope:  # of half a minute
             await agent.call("certify", design="leg", budget_s=500)
         assert scope.cancelled_caught
@@ -224,6 +228,25 @@ def test_hostile_arguments_are_refused_in_words(tmp_path: Path, tool: str, argum
             return await Agent(client).refused(tool, **arguments)
 
     assert words in finish(call())
+
+
+def test_render_is_bound_to_a_view_that_is_a_resource(tmp_path: Path) -> None:
+    """As MCP Apps has it: the tool names a ui:// page of the app's type; without support for it, the tool answers pictures as before."""
+
+    async def work(agent: Agent) -> None:
+        tools = {tool.name: tool for tool in (await agent.client.list_tools()).tools}
+        assert {name for name, tool in tools.items() if tool.meta} == {"render"}
+        uri = tools["render"].meta["ui"]["resourceUri"]
+        (shell,) = (await agent.client.read_resource(uri)).contents
+        assert shell.mime_type == "text/html;profile=mcp-app"
+        assert "ui://articad/designs/" in shell.text
+        (template,) = (await agent.client.list_resource_templates()).resource_templates
+        assert template.uri_template == "ui://articad/designs/{design}"
+        for wrong in ("no_such", "..%2F..%2Fetc"):
+            with pytest.raises(Exception, match=r"(?i)no design|not a valid name|not found|unknown"):
+                await agent.client.read_resource(f"ui://articad/designs/{wrong}")
+
+    over_stdio(tmp_path, work)
 
 
 def test_a_million_findings_are_cut_with_a_note() -> None:
