@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 @command("build", "Build a plan's parts, assemble, check and export them.", argument("plan", metavar="PLAN_DIR"), *BUILD_ARGUMENTS)
 def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands.steps import build_cache, draw, plan_in
-    from articad.runs.record import record_assembly, record_certificate, record_checks, record_export, record_page
+    from articad.runs.record import record_assembly, record_certificate, record_checks, record_export, record_objections, record_page
     from articad.runs.run import RunRequest, open_or_create, require_place
+    from articad.simulation.standing import STANDING, stands
 
     plan = plan_in(options.plan)
     folder = Path(options.plan)
@@ -41,6 +42,9 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
             for name in options.formats:
                 with stage(tell, f"export {name}"):
                     record_export(run, assembly, name)
+            for name in [name for name in options.formats if name in STANDING and checks.ok]:
+                with stage(tell, f"simulation of {name} at rest"):
+                    record_objections(run, name, stands(assembly, Path(run.exports()[name]["main"])))
             if options.pictures:
                 with stage(tell, "page"):
                     record_page(run, assembly)

@@ -12,6 +12,7 @@ from articad.assembly import Assembly
 from articad.certificates.certificate import Certificate
 from articad.connectors.connector import Connector
 from articad.errors import ReadError
+from articad.findings import Findings
 from articad.geometry.mesh_files import write_stl
 from articad.geometry.part import Solid
 from articad.interference.check import Checks
@@ -119,6 +120,17 @@ def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: boo
     run.save_export(format_name, bundle.files, bundle.to_json())
     run.trace("artifact", kind=format_name, file=f"export/{format_name}/{bundle.main}")
     return run.exports()[format_name]
+
+
+def record_objections(run: Run, format_name: str, findings: Findings) -> None:
+    """Add what a simulator says against an export to the export's report, and to the trace that it was asked."""
+    run.trace("note", where=f"export.{format_name}", message="loaded and held at rest in MuJoCo", ok=findings.ok)
+    if findings:
+        report = {key: value for key, value in run.exports()[format_name].items() if key not in {"folder", "main"}}
+        said = report["findings"] + [finding.to_json() for finding in findings]
+        run.save_export(format_name, {}, report | {"ok": report["ok"] and findings.ok, "findings": said})
+        for finding in findings:
+            run.trace_finding(finding)
 
 
 def run_report(run: Run) -> Report:

@@ -23,6 +23,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Callable, Mapping
 from functools import cache
 from importlib.metadata import version
@@ -182,13 +183,40 @@ def newton(assembly: Assembly, path: Path) -> EngineOutcome:
         "following": sorted((following | coupled) - set(drivers) - opened),
         "opened": sorted(opened),
     }
-    done = _run([PYTHON, "-W", "ignore", str(Path(__file__).with_name("newton_trial.py")), str(path), json.dumps(told)])
-    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
-    if done.returncode or not lines:
-        return EngineOutcome("newton", loads=False, message=done.stderr[-300:])
-    outcome = EngineOutcome.from_json(json.loads(lines[-1]))
+    outcome = _newton_trials().ask(path, told)
     outcome.open_loops = len(assembly.mechanism.loop_joints) if opened else 0
     return outcome
+
+
+class _NewtonTrials:
+    """A process that tries one file after the other in Newton, whose import takes longer than many trials."""
+
+    def __init__(self) -> None:
+        self.process: subprocess.Popen[str] | None = None
+
+    def ask(self, path: Path, told: Mapping[str, Any]) -> EngineOutcome:
+        """Return the measurements of a file; a failed one if the process ends or takes too long."""
+        if self.process is None or self.process.poll() is not None:
+            command = [PYTHON, "-W", "ignore", str(Path(__file__).with_name("newton_trial.py"))]
+            pipe = subprocess.PIPE
+            self.process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, text=True, env=_environment())
+        process = self.process
+        assert process.stdin is not None
+        assert process.stdout is not None
+        timer = threading.Timer(SECONDS, process.kill)
+        timer.start()
+        try:
+            process.stdin.write(json.dumps([str(path), told]) + "\n")
+            process.stdin.flush()
+            line = next((line for line in process.stdout if line.startswith("{")), None)
+        finally:
+            timer.cancel()
+        return (
+            EngineOutcome("newton", loads=False, message="its process ended") if line is None else EngineOutcome.from_json(json.loads(line))
+        )
+
+
+_newton_trials: Final = cache(_NewtonTrials)
 
 
 def _loads(path: Path) -> Said:
@@ -307,8 +335,11 @@ def _digest(path: Path) -> str:
 
 
 def _run(command: list[str]) -> subprocess.CompletedProcess[str]:
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1"}
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=SECONDS, env=environment)
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=SECONDS, env=_environment())
+
+
+def _environment() -> dict[str, str]:
+    return os.environ | {"PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1"}
 
 
 # ---------------------------------------------------------------------- the table

@@ -294,17 +294,24 @@ def _split(label: str, count: int) -> list[str]:
     return [f"{label}.{index}" for index in range(count)]
 
 
-def main(arguments: list[str]) -> int:
-    """Try a model out and print what was measured."""
-    path, told = arguments
-    options = json.loads(told)
+def tried(path: str, options: dict[str, Any]) -> EngineOutcome:
+    """Return what was measured of a file; a failure to load it as a message."""
     drivers = options.get("drivers")
-    outcome = Trial(Path(path), options.get("rest", {})).run(
-        None if drivers is None else tuple(drivers), frozenset(options.get("following", ())), frozenset(options.get("opened", ()))
-    )
-    print("\n" + json.dumps(asdict(outcome)))  # noqa: T201 - this is the answer
+    try:
+        return Trial(Path(path), options.get("rest", {})).run(
+            None if drivers is None else tuple(drivers), frozenset(options.get("following", ())), frozenset(options.get("opened", ()))
+        )
+    except Exception as error:  # noqa: BLE001 - whatever Newton raises about a file is its answer
+        return EngineOutcome("newton", loads=False, message=f"{type(error).__name__}: {error}"[:300])
+
+
+def main() -> int:
+    """Try the models that lines of the input name, `[path, options]`, and print what was measured, a line for each."""
+    for line in sys.stdin:
+        path, options = json.loads(line)
+        print("\n" + json.dumps(asdict(tried(path, options))), flush=True)  # noqa: T201 - this is the answer
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())
