@@ -322,5 +322,15 @@ class Part:
         """Return the same part under another name."""
         return replace(self, name=name)
 
+    def _repr_html_(self) -> str:
+        """Return the HTML by which a notebook shows the part: its page."""
+        from articad.report import notebook_part  # noqa: PLC0415 - only where one looks
+
+        return notebook_part(self)
+
+    def _repr_mimebundle_(self, **_wanted: object) -> dict[str, str]:
+        """Return the forms a notebook may choose from: the page, and plain text if nothing can be drawn."""
+        return {"text/plain": repr(self), "text/html": self._repr_html_()}
+
     def __repr__(self) -> str:
         return f"<Part {self.name}: {len(self.connectors)} connectors, {self.mesh or 'no geometry'}>"

@@ -4,7 +4,7 @@
 """
 
 from articad.report.model import viewer_model
-from articad.report.notebook import notebook_page
+from articad.report.notebook import notebook_page, notebook_part
 from articad.report.page import Documents, report_page
 
-__all__ = ["Documents", "notebook_page", "report_page", "viewer_model"]
+__all__ = ["Documents", "notebook_page", "notebook_part", "report_page", "viewer_model"]
