@@ -654,12 +654,14 @@ class _Certifying:
                 endless = bound if reason in ("endless", "not followed further") else rest + sign * math.pi
                 wanted = declared if math.isfinite(declared) else endless
                 if abs(end - wanted) > _END_SLACK:
+                    mark, scale = (" mm", 1.0) if unit == "mm" else ("°", 180 / math.pi)
+                    side, inside = ("upper", -_up(-end * scale)) if sign > 0 else ("lower", _up(end * scale))
                     self.findings.append(
                         Finding(
                             code="E_NOT_CHECKED",
                             where=f"joints.{joint}",
-                            message=f"{name} is proven up to {end:.6g} only, not to {wanted:.6g}: {reason}.",
-                            hint=f"Set the limit of {joint} to what the linkage can reach.",
+                            message=f"{name} is proven up to {end * scale:.6g}{mark} only, not to {wanted * scale:.6g}{mark}: {reason}.",
+                            hint=f"Set the {side} limit of {joint} to {inside:g}{mark}: the linkage can be followed as far.",
                             value=end,
                             limit=wanted,
                             unit=unit,

@@ -8,6 +8,7 @@ plan's author (design) or the script's (code), which number to change, and by ho
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -37,6 +38,8 @@ NEAR_REST = np.deg2rad(20)  # a part that turns on its own face collides with it
 FACE_SHARE = 0.1  # of a part's size: an axis closer to its surface is on its face
 EDGE_SHARE = 0.5  # of a part's reach from the axis: its edge beside the axis is nearer
 SHIFT_SHARE = 1.05  # of the length by which an axis must move: surfaces that only touch do not clear each other
+FACES_WITHIN = 6.0  # of that length: a face of one of the parts that is as near is a place for the axis
+FUSED_MM = 0.01  # bodies that overlap by this much fuse to one
 TRIED_POSES = 13  # at which a proposed axis is tried
 PARALLEL = 1e-3  # |sine| of the angle between axes whose distance is called a pitch
 _EXPLAINED = ("E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP", "E_MOTION_COLLISION")
@@ -332,8 +335,8 @@ class PairCase:
     def _shift_of_axis(self, joint: Joint, inset: float, depth: float) -> str:
         """Return advice on where the axis should be so that the two clear each other over its range; empty if no trial does.
 
-        Tried are shifts d along x and y of the joint's connector, by the lengths that the fault suggests. With both connectors shifted, the
-        child at q is Trans(d) · T(q) · T(rest)⁻¹ · Trans(−d) · T(rest), in the parent's frame: it turns about the new axis, and rests as before.
+        Tried are shifts d along x and y of the joint's connector, by the lengths that the fault suggests and to the outermost faces of the two
+        parts, if these are near. With both connectors shifted, the child at q is Trans(d) · T(q) · T(rest)⁻¹ · Trans(−d) · T(rest), in the parent's frame: it turns about the new axis, and rests as before.
         """
         freedom = self.chain.freedoms[-1]
         lower, upper = max(freedom.lower, freedom.rest - np.pi), min(freedom.upper, freedom.rest + np.pi)
@@ -341,8 +344,16 @@ class PairCase:
         rest, *moved = at if joint.parent == self.a else [np.linalg.inv(T) for T in at]
         parent, child = self.scene.bodies[joint.parent], self.scene.bodies[joint.child]
         frame = joint.T_parent_connector.matrix
-        lengths = sorted(SHIFT_SHARE * length for length in (inset, depth, inset + depth, 2.0 * (inset + depth)) if length > END_MM)
-        for length, direction in itertools.product(lengths, (-frame[:3, 0], frame[:3, 0], -frame[:3, 1], frame[:3, 1])):
+        near = (inset, depth, inset + depth, 2.0 * (inset + depth))
+        extents = [((body.mesh.vertices - at[:3, 3]) @ at[:3, :2]) for body, at in ((parent, frame), (child, joint.T_child_connector.matrix))]
+        trials = set[tuple[float, int]]()
+        for side, (axis, sign) in enumerate(itertools.product((0, 1), (-1.0, 1.0))):
+            faces = (float((sign * extent[:, axis]).max()) for extent in extents)
+            lengths = (*near, *(face for face in faces if face < FACES_WITHIN * (inset + depth)))
+            trials |= {(SHIFT_SHARE * length, side) for length in lengths if length > END_MM}
+        directions = (-frame[:3, 0], frame[:3, 0], -frame[:3, 1], frame[:3, 1])
+        for length, side in sorted(trials):
+            direction = directions[side]
             there, back = np.eye(4), np.eye(4)
             there[:3, 3], back[:3, 3] = length * direction, -length * direction
             turns = (there @ T @ np.linalg.inv(rest) @ back @ rest for T in moved)
@@ -406,12 +417,14 @@ def _in_pieces(name: str, body: Body) -> Finding | None:
     first, second = Body(solids[0]), Body(solids[1])
     gap = distance(first, second, SE3.identity())
     apart = f"{gap:.4g} mm apart" if gap > 0 else "not fused where they meet"
+    closer = math.ceil(1e3 * (gap + FUSED_MM)) / 1e3
     return Finding(
         code="E_NOT_ONE_SOLID",
         where=f"parts.{name}",
         parts=(name,),
         message=f"{name} consists of {len(solids)} solids; the first two are {apart}.",
-        hint="Fuse the bodies so that they overlap" + (f": close the gap of {gap:.4g} mm." if gap > 0 else ", by at least 0.01 mm."),
+        hint=f"Fuse the bodies so that they overlap by at least {FUSED_MM:g} mm"
+        + (f": bring them {closer:.6g} mm closer, or build what is between them." if gap > 0 else "."),
         value=gap,
         limit=0.0,
         unit="mm",
