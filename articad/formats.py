@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from articad.assembly import Assembly
-from articad.errors import ExportError, ReadError
+from articad.errors import ArticadError, ExportError, ReadError
 from articad.export.bundle import Bundle
 from articad.export.freecad import write_freecad
 from articad.export.freecad_split import is_part_file
@@ -22,7 +22,7 @@ from articad.export.threemf import write_3mf
 from articad.export.urdf import write_urdf
 from articad.export.usd import write_usd
 from articad.files import RECORD_BYTES, differs, read_file
-from articad.findings import Finding
+from articad.findings import Finding, Findings
 from articad.geometry.mesh_files import MADE_BY_ARTICAD
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
@@ -258,13 +258,18 @@ def convert(
 
     Raises:
         ReadError: If the source cannot be read.
-        ExportError: As for `write`; the source is not read if the target's format is unknown.
+        ExportError: As for `write`; the source is not read if the target's format is unknown. If writing fails, the findings of the
+            error go on with the reader's: what is wrong with the file may be the cause.
     """
     _written_as(target)
     if any(one.is_file() and Path(target).exists() and one.samefile(target) for one in (Path(source), Path(source) / "plan.json")):
         raise _replaces(Path(target), f"{target} is the file to convert.", "Name another file.")
     assembly = read(source, root=root, fuse=fuse, srdf=srdf)
-    return assembly, write(assembly, target, strict=strict, **options)
+    try:
+        return assembly, write(assembly, target, strict=strict, **options)
+    except ArticadError as error:
+        error.findings = Findings([*error.findings, *(finding for finding in assembly.findings if finding not in error.findings)])
+        raise
 
 
 def _written_as(path: str | Path) -> Format:

@@ -453,6 +453,12 @@ CODES: dict[str, Code] = {
         "A part of a FreeCAD document is not where its joints put it.",
         "Solve the assembly in FreeCAD and save it.",
     ),
+    "W_FREECAD_APART": Code(
+        "import",
+        None,
+        "A joint of a FreeCAD document does not hold where its parts stand in the document.",
+        "Correct the faces that the joint refers to, and solve the assembly in FreeCAD.",
+    ),
     "I_FREECAD_EDIT": Code(
         "import", None, "A FreeCAD document was changed after articad wrote it; articad adopts the change.", "Nothing needs to be done."
     ),

@@ -23,7 +23,7 @@ from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
-from articad.errors import ArticadError
+from articad.errors import ArticadError, LoopError
 from articad.export.freecad_content import PROPERTY, Content, content_of, unpacked_content
 from articad.findings import Finding, Findings
 from articad.geometry.mass import MassProperties
@@ -540,7 +540,7 @@ class _Model:
             )
         except ArticadError as error:
             raise unreadable(self.path, self.assembly.name, f"It is not a valid mechanism: {error.message}") from error
-        return replace(made, findings=Findings(self.findings), foreign=True)
+        return replace(made, findings=Findings([*self.findings, *self.apart(joints)]), foreign=True)
 
     def joined(self, joints: list[Joint], rows: Iterable[tuple[FreeCADObject, str, Joint | None]]) -> tuple[list[Joint], list[Coupling]]:
         """Return joints together with more joints of the document, as `joints` yields them, and the couplings among these.
@@ -567,6 +567,34 @@ class _Model:
         if isinstance(coupling, str):
             raise self.refused(item, told.kind, coupling)
         return coupling
+
+    def apart(self, joints: Iterable[Joint]) -> Iterator[Finding]:
+        """Yield the joints whose two frames stand otherwise in the document than their type allows.
+
+        FreeCAD keeps the placements of the last solve, and its solver drops constraints that it takes for redundant: a slider and a hinge
+        of one loop may both be a degree askew in a document that it calls solved. With T the poses of the parts, C the frames of the joint,
+        F the turn of an opposed one and J(q) its motion, the deviation is J(q)⁻¹ C_p⁻¹ T_p⁻¹ T_c C_c F at the coordinates q nearest to it.
+        """
+        for joint in joints:
+            flip = FLIP if joint.mate is Mate.OPPOSED else IDENTITY
+            D = (self.poses[joint.parent] @ joint.T_parent_connector).inverse() @ self.poses[joint.child] @ joint.T_child_connector @ flip
+            left = joint.motion(joint.rest).inverse() @ D
+            far, turned = float(np.linalg.norm(left.translation)), float(np.linalg.norm(left.log()[3:]))
+            if far <= STANDS_MM and turned <= STANDS_RAD:
+                continue
+            sizes = [f"{far:.4g} mm apart"] if far > STANDS_MM else []
+            sizes += [f"{math.degrees(turned):.3f}° askew"] if turned > STANDS_RAD else []
+            yield Finding(
+                code="W_FREECAD_APART",
+                where=f"joints.{joint.name}",
+                parts=(joint.parent, joint.child),
+                message=f"Joint {joint.name!r} ({joint.type}) does not hold in the document: its sides on {joint.parent!r} and {joint.child!r} "
+                f"are {' and '.join(sizes)}. FreeCAD may call this solved.",
+                hint="articad places the parts where joints hold. Correct the faces that the joint refers to, and solve the assembly in FreeCAD.",
+                value=far if far > STANDS_MM else math.degrees(turned),
+                limit=STANDS_MM if far > STANDS_MM else math.degrees(STANDS_RAD),
+                unit="mm" if far > STANDS_MM else "deg",
+            )
 
     def part(self, name: str, joints: list[Joint]) -> Part:
         """Return a part with the connectors that joints use, as the document has it."""
@@ -947,8 +975,13 @@ def _taken(edit: Edit, model: _Model, used: set[str]) -> bool:
 
 
 def _elsewhere(model: _Model, made: Assembly) -> Iterator[Finding]:
-    """Yield the parts that stand elsewhere in the document than their joints put them."""
-    for name, T in made.at().items():
+    """Yield the parts that stand elsewhere in the document than their joints put them; where loops do not close, the joints that do not hold."""
+    try:
+        poses = made.at()
+    except LoopError:  # whoever needs poses is told of the loop
+        yield from model.apart(made.joints)
+        return
+    for name, T in poses.items():
         D = T.inverse() @ model.poses[name]
         far, turned = float(np.linalg.norm(D.translation)), float(np.linalg.norm(D.log()[3:]))
         if far > STANDS_MM or turned > STANDS_RAD:

@@ -24,6 +24,7 @@ from articad.kinematics.joints import Joint
 Json = dict[str, Any]
 FloatArray = NDArray[np.float64]
 
+OWN_KINDS = ("fixed", "revolute", "slider", "cylindrical", "ball")  # of joints that FreeCAD has by itself
 EXAMINE = Path(freecad_install.__file__).parent / "inside_freecad" / "examine.py"
 
 
