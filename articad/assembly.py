@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from articad.aliases import Progress
+from articad.aliases import Fastening, Progress
 from articad.arrays import FloatArray
 from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify, constrained_joints
 from articad.certificates.fits import PROOF_SECONDS, FitReport, certified_fits, check_fits, followed
@@ -21,7 +21,7 @@ from articad.connectors.se3 import SE3
 from articad.disassembly.order import assembly_order
 from articad.disassembly.poses import end_poses
 from articad.disassembly.steps import AssemblyOrder
-from articad.errors import KinematicsError, LimitError, PlanError, UnknownJointError
+from articad.errors import ArticadError, KinematicsError, LimitError, PlanError, UnknownJointError, did_you_mean
 from articad.findings import Findings
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import MassProperties, Part
@@ -556,18 +556,24 @@ class Assembly:
             return made
         return replace(made, findings=made.findings + Findings(lost_meshes(scene, self.mechanism)))
 
-    def assembly_order(self, fastenings: Mapping[str, str] | None = None) -> AssemblyOrder:
+    def assembly_order(self, fastenings: Mapping[str, Fastening] | None = None) -> AssemblyOrder:
         """Find an order in which the parts go together at rest, with a proven path for each, or the parts that block each other.
 
         Paths are straight; each step's `strength` says whether it is proven. The environment is not in the way.
 
         Args:
-            fastenings: By joint name how it is fastened, such as "snap" or "press": its two parts then do not stop each other, and the step
-                that joins them is permitted, not proven.
+            fastenings: By joint name how it is fastened, in place of what the joint states. Two parts that snap, are pressed together or
+                held by a circlip do not stop each other, and the step that joins them is permitted, not proven. A purchased pair stays
+                together. A screw or adhesive is only named.
 
         Raises:
             UnknownJointError: If there is no joint of a name.
+            ArticadError: If there is no such fastening.
         """
+        for how in (fastenings or {}).values():
+            if how not in get_args(Fastening):
+                kinds = ", ".join(get_args(Fastening))
+                raise ArticadError(f"{how!r} is not a fastening.{did_you_mean(how, get_args(Fastening))} Known: {kinds}.")
         known = [joint.name for joint in self.joints]
         for name in fastenings or {}:
             if name not in known:

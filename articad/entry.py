@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from articad import formats
-from articad.aliases import Progress
+from articad.aliases import Fastening, Progress
 from articad.assembly import Assembly
 from articad.auditing.examine import AUDITED, AuditOptions, audit_assembly, audit_file, audit_made
 from articad.auditing.report import Audit
@@ -98,7 +98,7 @@ def certify(
     return assembly.certify(joints, pairs=pairs, epsilon=epsilon, budget=budget)
 
 
-def assembly_order(target: str | Path | Assembly, fastenings: Mapping[str, str] | None = None) -> AssemblyOrder:
+def assembly_order(target: str | Path | Assembly, fastenings: Mapping[str, Fastening] | None = None) -> AssemblyOrder:
     """Find an order in which the parts go together, with a proven path for each; see `Assembly.assembly_order`.
 
     Args:

@@ -1,4 +1,4 @@
-"""Write the papers that a workshop needs: the parts list, the cut list, and drawings."""
+"""Write the papers that a workshop needs: the parts list, the cut list, drawings, and the assembly manual."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from articad.commands.assembling import FASTEN
 from articad.commands.command import argument, closest, command
 from articad.commands.options import SANDBOX, amount, names
 from articad.commands.steps import loaded
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 BILLS: Final = ("csv", "json", "xlsx")
 DRAWINGS: Final = ("svg", "pdf", "dxf")
+MANUALS: Final = ("pdf", "svg", "html")
 PURCHASED = argument("--purchased", metavar="NAMES", type=names, default=(), help="parts that are bought; * and ? are wildcards")
 PAPERS_OUT = argument("--out", metavar="DIR", default="papers", help="where to write (papers)")
 
@@ -28,6 +30,11 @@ def bills(text: str) -> tuple[str, ...]:
 def drawings(text: str) -> tuple[str, ...]:
     """Read `svg,dxf`."""
     return _chosen(text, DRAWINGS)
+
+
+def manuals(text: str) -> tuple[str, ...]:
+    """Read `pdf,html`."""
+    return _chosen(text, MANUALS)
 
 
 def _chosen(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
@@ -165,6 +172,75 @@ def _drawing(options: argparse.Namespace, terminal: Terminal) -> Report:
         "files": [str(Path(options.out) / name) for name in files],
         "findings": [],
     }
+
+
+@command(
+    "manual",
+    "Write an assembly manual: a page for each step, exploded along its proven path, and a page on which each step can be played.",
+    argument("target", metavar="RUN|PLAN_DIR|FILE"),
+    argument("--to", metavar="FORMATS", dest="manuals", type=manuals, default=("pdf", "html"), help="pdf, svg, html (pdf,html)"),
+    FASTEN,
+    PURCHASED,
+    PAPERS_OUT,
+    SANDBOX,
+)
+def _manual(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.commands import summaries
+    from articad.export.bundle import Bundle
+    from articad.export.names import file_name
+    from articad.papers.items import items_of
+    from articad.papers.manual import manual_of
+    from articad.papers.writers import require_pdf, written_pdf, written_svg
+
+    if "pdf" in options.manuals:
+        require_pdf()
+    assembly = loaded(options.target, options, terminal)
+    items = items_of(assembly, options.purchased)
+    with terminal.progress("Taking apart"):
+        order = assembly.assembly_order(options.fasten)
+    report = order.to_json()
+    stem = file_name(assembly.name)  # a file of somebody else may give any name
+    sheets = []
+    files: dict[str, bytes] = {}
+    if {"pdf", "svg"} & set(options.manuals):
+        with terminal.progress("Drawing") as tell:
+            for sheet in manual_of(assembly, order, items):
+                sheets.append(sheet)
+                tell(sheet.name, "done")
+    if "pdf" in options.manuals:
+        files[f"{stem}_manual.pdf"] = written_pdf(sheets, f"{assembly.name}: assembly manual")
+    if "svg" in options.manuals:
+        files |= {f"{stem}_manual_{number:02}.svg": written_svg(sheet) for number, sheet in enumerate(sheets, start=1)}
+    if "html" in options.manuals:
+        files[f"{stem}_manual.html"] = _played(options.target, assembly, report).encode()
+    Bundle(files).write(options.out)
+    summaries.print_order(report, terminal)
+    summaries.print_findings(report["findings"], terminal)
+    for name in files:
+        terminal.say(str(Path(options.out) / name))
+    return {
+        "schema": "articad.manual/1",
+        "ok": order.ok,
+        "pages": [sheet.told for sheet in sheets],
+        "order": report,
+        "files": [str(Path(options.out) / name) for name in files],
+        "findings": report["findings"],
+    }
+
+
+def _played(target: str, assembly: Any, order: Report) -> str:
+    """Return the page of a run, or of anything else, with the order of assembly."""
+    from dataclasses import replace
+
+    from articad.report import Documents, report_page
+    from articad.runs.record import documents_of
+    from articad.runs.run import REQUEST_FILE, Run
+
+    documents = Documents()
+    if (Path(target) / REQUEST_FILE).is_file():
+        with Run.view(target) as run:
+            documents = replace(documents_of(run), exports={}, files=())  # what stands beside the page of the run, not beside this one
+    return report_page(assembly, replace(documents, order=order))
 
 
 def _cut_list(assembly: Any, items: Any, options: argparse.Namespace) -> tuple[Report, str, bytes]:

@@ -8,13 +8,14 @@ search: they are components of more than one part. Each removal is proven all al
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from articad.aliases import Fastening
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.disassembly.poses import OtherPose
@@ -28,12 +29,16 @@ from articad.kinematics.joints import JointType
 __all__ = ["assembly_order"]
 
 _ROUND: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.BALL, JointType.UNIVERSAL)
+_BY_FORCE: Final[frozenset[Fastening]] = frozenset({"snap", "press", "circlip"})  # shapes pass through each other when these are joined
 _MOST_WAYS: Final = 24  # further directions that are tried for parts that no joint's axis frees
 _ROUNDED: Final = 6  # digits of numbers in the result
 
 _FURTHER: Final = 4  # turns of directions that are tried in other configurations than rest
 _STEPS: Final = (0.98, 0.94, 0.85, 0.7, 0.5, 0.25)  # of the travel in a first direction, after which a second is tried
 _PARALLEL: Final = 1e-9  # of a cosine
+_FAR: Final = 1.5  # of its size: a way that is longer is compared with others
+_NEARER: Final = 0.5  # of that way: only a way as short replaces it
+_FLAT: Final = 1e-6  # of a unit vector's height
 _LEAST_MM: Final = 0.3  # of the travel in a first direction: less is play
 
 Atom = tuple[str, ...]  # parts that stay together for now
@@ -46,7 +51,7 @@ def assembly_order(
     *,
     name: str = "assembly",
     others: Sequence[OtherPose] = (),
-    fastenings: Mapping[str, str] | None = None,
+    fastenings: Mapping[str, Fastening] | None = None,
 ) -> AssemblyOrder:
     """Return the order in which the parts go together.
 
@@ -56,7 +61,9 @@ def assembly_order(
         ground: The part that everything is put onto.
         name: Of the product.
         others: Further configurations in which parts may be put in place, such as a door that stands open.
-        fastenings: By joint name how it is fastened, such as "snap": its two parts then do not stop each other.
+        fastenings: By joint name how it is fastened, where a joint does not state it or another fastening is to be tried. Two parts that
+            snap, are pressed together or held by a circlip do not stop each other. Purchased pairs are never taken apart. Screws and
+            adhesive are only named.
     """
     return _Taking(scene, poses, ground, name, others, fastenings or {}).order()
 
@@ -81,16 +88,28 @@ class _Taking:
     """Takes an assembly apart."""
 
     def __init__(
-        self, scene: Scene, poses: Mapping[str, SE3], ground: str, name: str, others: Sequence[OtherPose], fastenings: Mapping[str, str]
+        self,
+        scene: Scene,
+        poses: Mapping[str, SE3],
+        ground: str,
+        name: str,
+        others: Sequence[OtherPose],
+        fastenings: Mapping[str, Fastening],
     ) -> None:
-        self.scene, self.name, self.fastenings = scene, name, fastenings
+        self.scene, self.name = scene, name
         self.joints = tuple(joint for joint in scene.relations.joints if joint.type is not JointType.FREE)
-        by_force = {frozenset((joint.parent, joint.child)): joint.name for joint in self.joints if joint.name in fastenings}
-        self.forced = {pair: fastenings[joint] for pair, joint in by_force.items()}
+        stated = {joint.name: joint.fastening for joint in self.joints if joint.fastening is not None}
+        self.fastenings: dict[str, Fastening] = {**stated, **fastenings}
+        pairs = {joint.name: frozenset((joint.parent, joint.child)) for joint in self.joints}
+        self.forced = {pairs[joint]: how for joint, how in self.fastenings.items() if how in _BY_FORCE}
         self.ways = Ways(scene, poses, self.forced)
         self.open = [(Ways(scene, other.poses, self.forced), other.at) for other in others]
         self.parts = tuple(name for name in self.ways.parts if name not in scene.environment)
         self.left_out = tuple(sorted(scene.broken))
+        self.units = Groups(self.parts)  # parts that are bought as one
+        for joint in self.joints:
+            if self.fastenings.get(joint.name) == "purchased" and {joint.parent, joint.child} <= set(self.parts):
+                self.units.join(joint.parent, joint.child)
         self.base = ground if ground in self.parts else self._heaviest(self.parts)
         self.height = {name: float(self.ways.points(name)[:, 2].mean()) for name in self.parts}
         self.declared = {name: at for at, name in enumerate(self.parts)}
@@ -99,10 +118,11 @@ class _Taking:
 
     def order(self) -> AssemblyOrder:
         """Return the order."""
-        together: dict[str, list[str]] = {}
+        together, first = Groups(self.parts), dict[str, str]()
         for part in self.parts:
-            together.setdefault(self.scene.relations.rigid.leader(part), []).append(part)
-        steps = list(self._steps([tuple(parts) for parts in together.values()], self.base, self.name))
+            for whole in (self.scene.relations.rigid.leader(part), f"unit {self.units.leader(part)}"):
+                together.join(first.setdefault(whole, part), part)
+        steps = list(self._steps(together.sets(), self.base, self.name))
         numbered = tuple(step.model_copy(update={"number": at + 1}) for at, step in enumerate(steps))
         return AssemblyOrder(
             schema="articad.order/1",
@@ -119,17 +139,28 @@ class _Taking:
         while len(left) > 1:
             found = self._removable(left, base) or self._elsewhere(left, base) or self._in_two_moves(left, base)
             if found is None:
-                whole = [atom for atom in left if len(atom) > 1]
-                if not whole:
+                apart = self._split(part for atom in left for part in atom)  # perhaps only single parts can leave
+                if len(apart) == len(left):
                     self._report(left)
                     break
-                left = [(part,) for atom in left for part in atom]  # perhaps only single parts can leave
+                left = apart
                 continue
+            found = self._nearer(found, [part for atom in left if atom not in found.atoms for part in atom])
             removed.append(found)
             left = [atom for atom in left if atom not in found.atoms]
         placed = [part for atom in left for part in atom]
-        if len(left) == 1 and len(placed) > 1:  # the base is itself several parts
-            yield from self._steps([(part,) for part in placed], base, name)
+        if len(left) == 1 and len(self._split(placed)) > 1:  # the base is itself several parts
+            yield from self._steps(self._split(placed), base, name)
+        elif len(left) == 1 and len(placed) > 1:
+            bought = tuple(
+                (joint.parent, joint.child, "purchased")
+                for joint in self.joints
+                if self.fastenings.get(joint.name) == "purchased" and {joint.parent, joint.child} <= set(placed)
+            )
+            whole = f"{base}_as_bought"
+            yield AssemblyStep(
+                number=0, assembly=name, parts=tuple(placed), subassembly=whole, onto=(), moves=(), strength="permitted", permitted=bought
+            )
         elif len(placed) > 1:
             yield AssemblyStep(number=0, assembly=name, parts=tuple(placed), subassembly=f"{base}_and_others", onto=(), moves=())
         else:
@@ -139,10 +170,17 @@ class _Taking:
             if len(moving) > 1:
                 first = min(moving, key=lambda part: (self.hops.get(part, len(self.parts)), self.declared[part]))
                 own = f"{first}_assembly"
-                inner = removal.atoms if len(removal.atoms) > 1 else [(part,) for part in moving]
+                inner = removal.atoms if len(removal.atoms) > 1 else self._split(moving)
                 yield from self._steps(inner, first, own)
             yield self._step(removal, placed, name, own)
             placed += moving
+
+    def _split(self, parts: Iterable[str]) -> list[Atom]:
+        """Return parts one by one, but for those that are bought as one."""
+        units: dict[str, list[str]] = {}
+        for part in parts:
+            units.setdefault(self.units.leader(part), []).append(part)
+        return [tuple(unit) for unit in units.values()]
 
     def _step(self, removal: _Removal, placed: Sequence[str], name: str, own: str | None) -> AssemblyStep:
         moving = removal.parts
@@ -177,6 +215,7 @@ class _Taking:
             moves=tuple(moves),
             at=removal.at,
             joints=tuple(joint.name for joint in joints),
+            fastened={joint.name: self.fastenings[joint.name] for joint in joints if joint.name in self.fastenings},
             strength="permitted" if forced else "proven",
             permitted=forced,
         )
@@ -216,6 +255,26 @@ class _Taking:
             if found is not None:
                 return found
         return None
+
+    def _nearer(self, found: _Removal, staying: Sequence[str]) -> _Removal:
+        """Return the removal in a direction in which it is clear of its partners much sooner, if its way is long for its size.
+
+        A handle comes from the front of its door, not from above, all along the door.
+        """
+        moving, ways = found.parts, found.ways
+        joined = {end for joint in self.joints for end in (joint.parent, joint.child) if {joint.parent, joint.child} & set(moving)}
+        partners = [name for name in staying if name in joined] or staying
+        points = np.concatenate([ways.points(name) for name in moving])
+        size, length = float(np.linalg.norm(np.ptp(points, axis=0))), ways.clear_length(moving, partners, found.way)
+        if found.first.any() or length <= _FAR * size:
+            return found
+        best = (_NEARER * length, found.way)
+        for way in distinct([axis for name in moving for axis in ways_of(self.scene, ways.poses, name)]):
+            away = ways.clear_length(moving, partners, way)
+            rises = float(way[2]) >= -_FLAT or float(found.way[2]) < -_FLAT  # nothing comes from below that can come from elsewhere
+            if away < best[0] and rises and np.isinf(ways.stop(moving, staying, way).travel):
+                best = (away, way)
+        return replace(found, way=best[1])
 
     def _in_two_moves(self, left: Sequence[Atom], base: str) -> _Removal | None:
         """Return an atom that leaves after a first move in another direction: out of a keyhole, over a lip."""
@@ -278,7 +337,7 @@ class _Taking:
         names = [name for atom in atoms for name in atom]
         rest = [name for atom in left if atom not in atoms for name in atom]
         loose = self._pieces(rest) + self._pieces(names) - 1 > self._pieces([*names, *rest])
-        sinks = float(way[2]) < -1e-6  # it would be put in place from below
+        sinks = float(way[2]) < -_FLAT  # it would be put in place from below
         return (float(loose), float(sinks), float(rank), float(len(names)), -max(self.height[n] for n in names), -self.declared[names[-1]])
 
     def _pieces(self, names: Iterable[str]) -> int:
@@ -325,10 +384,10 @@ class _Taking:
         round_one = next((joint for joint in joints if joint.type in _ROUND), None)
         if round_one is not None:
             return (
-                f"Split the bearing of {round_one.name!r}, open its side to a slot, or make its pin a part of its own; "
-                f"if it snaps or is pressed into place, call assembly_order(fastenings={{{round_one.name!r}: 'snap'}}) in Python."
+                f"Split the bearing of {round_one.name!r}, open its side to a slot, or make its pin a part of its own; if it snaps or is "
+                f"pressed into place, set joints.{round_one.name}.fastening to 'snap' or 'press', or try assembly_order(fastenings={{{round_one.name!r}: 'snap'}})."
             )
-        return f"Open one side of {names[0]}, make one of the parts as two, or name a joint that snaps or is pressed in assembly_order(fastenings=...) in Python."
+        return f"Open one side of {names[0]}, make one of the parts as two, or set the fastening of the joint that snaps, is pressed or is bought as one piece."
 
 
 def _new(axes: Iterable[FloatArray], known: Sequence[FloatArray]) -> FloatArray:

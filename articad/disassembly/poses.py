@@ -11,7 +11,7 @@ from articad.connectors.se3 import SE3
 from articad.interference.sampled_ranges import sampled_ranges
 from articad.kinematics.mechanism import Mechanism
 
-__all__ = ["OtherPose", "end_poses"]
+__all__ = ["OtherPose", "end_poses", "poses_at"]
 
 _SAME = 1e-9  # rad or mm
 
@@ -47,3 +47,17 @@ def end_poses(mechanism: Mechanism, *, middle: bool = True) -> list[OtherPose]:
                 placed = solution.poses[0]
                 found.append(OtherPose({freedom.name: value}, {name: placed[k] for k, name in enumerate(mechanism.parts)}))
     return found
+
+
+def poses_at(mechanism: Mechanism, at: Mapping[str, float]) -> dict[str, SE3]:
+    """Return `T_ground_part` of all parts where some drivers have other values than at rest.
+
+    Args:
+        mechanism: Places the parts.
+        at: By driver [rad, mm].
+    """
+    q = np.array(mechanism.rest, dtype=np.float64)
+    for place, driver in enumerate(mechanism.drivers):
+        q[place] = at.get(driver.name, q[place])
+    placed = mechanism.solve(q[None]).poses[0]
+    return {name: placed[index] for index, name in enumerate(mechanism.parts)}

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
+from articad.aliases import Fastening
+from articad.arrays import FloatArray
 from articad.findings import Finding, Findings
 
-__all__ = ["AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow"]
+__all__ = ["AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow", "shown_path", "words_of"]
+
+_SHOWN: Final = (0.14, 0.75)  # of the size of what is shown: least and largest distance of new parts from their place
+_FROM: Final = {
+    (0, 0, -1): "from above", (0, 0, 1): "from below", (1, 0, 0): "from the left", (-1, 0, 0): "from the right", (0, 1, 0): "from the front",
+    (0, -1, 0): "from behind",
+}  # fmt: skip
 
 Vector3 = tuple[float, float, float]
 
@@ -51,7 +60,8 @@ class AssemblyStep(_Form):
         moves: The path; empty if nothing is in place yet.
         at: Values of the drivers at which the step is done, such as a door that stands open [rad, mm]; the others, and all if empty, at rest.
         joints: Joints between the parts and those in place.
-        strength: "proven": free of collision all along the path; "permitted": so but for pairs that are fastened by force, such as a snap.
+        fastened: How those of them are held together whose fastening is stated.
+        strength: "proven": free of collision all along the path; "permitted": so but for pairs that are fastened by force, such as a snap, or bought as one.
         permitted: These pairs, with their fastening.
     """
 
@@ -63,8 +73,42 @@ class AssemblyStep(_Form):
     moves: tuple[Move, ...]
     at: dict[str, float] = Field(default_factory=dict)
     joints: tuple[str, ...] = ()
+    fastened: dict[str, Fastening] = Field(default_factory=dict)
     strength: Literal["proven", "permitted"] = "proven"
-    permitted: tuple[tuple[str, str, str], ...] = ()
+    permitted: tuple[tuple[str, str, Fastening], ...] = ()
+
+
+def shown_path(step: AssemblyStep, size: float) -> FloatArray:
+    """Return the path of a step for a picture, as offsets of the new parts from their place `(n, 3)` [mm]; the last point is the place.
+
+    It begins where the new parts are clear of their partners, but neither so near that this is not seen nor so far that it fills the
+    picture. All points are on the path that is proven, which goes on in a straight line beyond its length.
+
+    Args:
+        step: The step.
+        size: Of what is shown [mm].
+    """
+    points = [np.zeros(3)]
+    for index, move in reversed(list(enumerate(step.moves))):
+        far = float(np.clip(move.apart_mm, *(share * size for share in _SHOWN))) if index == 0 else move.length_mm
+        points.append(points[-1] - far * np.array(move.direction))
+    return np.array(points[::-1])
+
+
+def words_of(step: AssemblyStep) -> str:
+    """Return what is done in a step, in a sentence."""
+    what = step.parts[0] if len(step.parts) == 1 else step.subassembly or ", ".join(step.parts)
+    if not step.moves:
+        return f"Start with {what}."
+    ways = [_way(move) for move in step.moves]
+    return f"Put {what} in place: {', then '.join(ways)}."
+
+
+def _way(move: Move) -> str:
+    toward = tuple(round(value) for value in move.direction)
+    exact = max(abs(a - b) for a, b in zip(move.direction, toward, strict=True)) < 1e-6
+    way = _FROM.get(toward, "") if exact else ""  # type: ignore[call-overload]
+    return way or "along ({:.3g}, {:.3g}, {:.3g})".format(*move.direction)
 
 
 class StopRow(_Form):

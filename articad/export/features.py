@@ -35,6 +35,7 @@ def features_of(assembly: Assembly) -> list[Feature]:
     features.extend(_coupling_features(assembly))
     features.extend(_part_features(assembly))
     features.extend(Feature("fit", f"joints.{joint}") for joint in assembly.fits)
+    features.extend(Feature("fastening", f"joints.{joint.name}") for joint in assembly.joints if joint.fastening)
     return features
 
 

@@ -79,6 +79,7 @@ class Job:
         self.assembly, self.folder, self.features, self.trees = assembly, folder, features, trees or {}
         self._told = [feature for joint in assembly.joints for feature in joint_features(joint)]
         self._told += [Feature("fit", f"joints.{joint}") for joint in assembly.fits]
+        self._told += [Feature("fastening", f"joints.{joint.name}") for joint in assembly.joints if joint.fastening]
         self.model = lower(assembly)
         self.name = self.model.name
         names = Names()

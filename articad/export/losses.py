@@ -378,6 +378,12 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         "sdf": LossRow("metadata"),
         "usd": LossRow("nothing", "fits"),
     },
+    "fastening": {
+        "urdf": LossRow("metadata"),
+        "mjcf": LossRow("metadata"),
+        "sdf": LossRow("metadata"),
+        "usd": LossRow("nothing", "how parts are fastened"),
+    },
     "name": {
         "urdf": LossRow("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
         "mjcf": LossRow("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
@@ -417,6 +423,7 @@ _FREECAD: dict[str, LossRow] = {
     "joint.friction": LossRow("a record", "friction in joints: FreeCAD has none"),
     "coupling": LossRow("a suppressed joint of the same kind", "FreeCAD's solver does not enforce it", refused=True),
     "fit": LossRow("a record", "fits: FreeCAD has none"),
+    "fastening": LossRow("a record", "how parts are fastened: FreeCAD has no such property"),
     "freecad.coupling": LossRow("a record", "FreeCAD has no such coupling", refused=True),
     "freecad.features": LossRow("its B-rep", "its features: it follows no parameter; write with FreeCAD to keep them"),
     "freecad.brep": LossRow("its B-rep", "editable features: it follows no parameter; build with the FreeCAD kernel to get them"),

@@ -145,6 +145,7 @@ def _joint(joint: Joint, name: str) -> Record:
         "velocity": list(joint.velocity),
         **({"damping": list(joint.damping)} if joint.damping else {}),
         **({"friction": list(joint.friction)} if joint.friction else {}),
+        **({"fastening": joint.fastening} if joint.fastening else {}),
     }
 
 

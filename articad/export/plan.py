@@ -215,7 +215,8 @@ class _Teller:
                 found[axis.rest] = degrees(rest) if axis.unit == "deg" else rest
         if joint.type is JointType.SCREW:
             found["lead_mm"] = joint.lead
-        return found | self._capacity(joint, where) | self._fit(joint)
+        fastening = {} if joint.fastening is None else {"fastening": joint.fastening}
+        return found | self._capacity(joint, where) | self._fit(joint) | fastening
 
     def _range(self, joint: Joint, field: str, bounds: tuple[float, float], where: str) -> Any:
         turns = field.endswith("_deg")

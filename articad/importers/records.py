@@ -6,10 +6,11 @@ import json
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
+from articad.aliases import Fastening
 from articad.assembly import Assembly, Kept
 from articad.connectors.connector import Connector
 from articad.connectors.mate import Mate
@@ -200,7 +201,15 @@ def _joint(record: Record) -> Joint:
         velocity=tuple(record["velocity"]),
         damping=tuple(record.get("damping", ())),
         friction=tuple(record.get("friction", ())),
+        fastening=_fastening(record.get("fastening")),
     )
+
+
+def _fastening(stated: object) -> Fastening | None:
+    known: Fastening | None = next((each for each in get_args(Fastening) if each == stated), None)
+    if stated is not None and known is None:
+        raise ValueError("the fastening of a joint is not known")
+    return known
 
 
 def _coupling(record: Record) -> Coupling:

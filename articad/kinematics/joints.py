@@ -16,6 +16,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from articad.aliases import Fastening
 from articad.arrays import FloatArray
 from articad.connectors import SE3, Mate
 from articad.errors import KinematicsError
@@ -309,6 +310,7 @@ class Joint:
         velocity: Largest speed [mm/s, rad/s] per coordinate, likewise.
         damping: Resistance per speed [N·s/mm, N·mm·s/rad] per coordinate, likewise.
         friction: Coulomb friction [N, N·mm] per coordinate; None or empty: none.
+        fastening: How its two parts are held together, which matters for the order of assembly; None if that is not stated.
     """
 
     name: str
@@ -329,6 +331,7 @@ class Joint:
     velocity: tuple[float | None, ...] = ()
     damping: tuple[float | None, ...] = ()
     friction: tuple[float | None, ...] = ()
+    fastening: Fastening | None = None
 
     @property
     def column_names(self) -> tuple[str, ...]:

@@ -15,7 +15,19 @@ import numpy as np
 from articad.arrays import FloatArray
 from articad.kernels.views import Arc, Line, Path2d, Segment
 
-__all__ = ["A3", "A4", "STYLES", "DimensionLine", "DrawingSheet", "Lettering", "SheetLine", "Style", "sampled", "text_width"]
+__all__ = [
+    "A3",
+    "A4",
+    "STYLES",
+    "DimensionLine",
+    "DrawingSheet",
+    "Lettering",
+    "SheetLine",
+    "SheetPicture",
+    "Style",
+    "sampled",
+    "text_width",
+]
 
 A4, A3 = (297.0, 210.0), (420.0, 297.0)
 FILING, EDGE = 20.0, 10.0  # margins
@@ -232,6 +244,16 @@ class Leader(NamedTuple):
         return lines, [arrow], [Lettering(min(knee[0], end) + 0.5, knee[1] + 0.8, self.words)]
 
 
+class SheetPicture(NamedTuple):
+    """A PNG picture whose lower left corner lies at (x, y)."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    png: bytes
+
+
 @dataclass
 class DrawingSheet:
     """One page.
@@ -245,6 +267,7 @@ class DrawingSheet:
         texts: Texts.
         arrows: Filled polygons.
         dimensions: Linear dimensions.
+        pictures: Pictures below everything else; DXF has none.
         told: What the page states, as JSON.
     """
 
@@ -256,6 +279,7 @@ class DrawingSheet:
     texts: list[Lettering] = field(default_factory=list)
     arrows: list[tuple[FloatArray, ...]] = field(default_factory=list)
     dimensions: list[DimensionLine] = field(default_factory=list)
+    pictures: list[SheetPicture] = field(default_factory=list)
     told: dict[str, object] = field(default_factory=dict)
     _cloud: list[FloatArray] = field(default_factory=list, repr=False)  # points of the first strokes
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import math
 from collections.abc import Sequence
@@ -37,6 +38,11 @@ def written_svg(sheet: DrawingSheet) -> bytes:
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" viewBox="0 0 {width:g} {height:g}">',
         f'<rect width="{width:g}" height="{height:g}" fill="#ffffff"/>',
     ]
+    rows += [
+        f'<image x="{_n(p.x)}" y="{_n(height - p.y - p.height)}" width="{_n(p.width)}" height="{_n(p.height)}" '
+        f'href="data:image/png;base64,{base64.b64encode(p.png).decode("ascii")}"/>'
+        for p in sheet.pictures
+    ]
     for style, (thick, dashes) in STYLES.items():
         paths = " ".join(_path(stroke.line, height) for stroke in strokes if stroke.style == style)
         if paths:
@@ -66,6 +72,7 @@ def written_pdf(sheets: Sequence[DrawingSheet], title: str) -> bytes:
         ArticadError: If reportlab is not installed.
     """
     require_pdf()
+    from reportlab.lib.utils import ImageReader  # noqa: PLC0415 - as below
     from reportlab.pdfgen.canvas import Canvas  # noqa: PLC0415 - an extra
 
     stream = io.BytesIO()
@@ -75,6 +82,8 @@ def written_pdf(sheets: Sequence[DrawingSheet], title: str) -> bytes:
     for sheet in sheets:
         canvas.setPageSize((sheet.size[0] * _POINT, sheet.size[1] * _POINT))
         canvas.scale(_POINT, _POINT)
+        for shown in sheet.pictures:
+            canvas.drawImage(ImageReader(io.BytesIO(shown.png)), shown.x, shown.y, shown.width, shown.height)
         strokes, arrows, texts = sheet.everything()
         for style, (thick, dashes) in STYLES.items():
             canvas.setLineWidth(thick)

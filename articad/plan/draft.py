@@ -255,6 +255,7 @@ class Draft:
                     driver=getattr(line.form, "driver", False),
                     effort=known.effort,
                     velocity=known.velocity,
+                    fastening=line.root.fastening,
                 )
             )
 

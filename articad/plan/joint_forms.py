@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
+from articad.aliases import Fastening
 from articad.plan.fields import CoordinatePair, Interval, Name, Number, NumberPair, PlanObject, Range, Reference, Text, Truth
 
 MateName = Literal["aligned", "opposed"]
@@ -42,6 +43,7 @@ class JointForm(PlanObject):
     mate: MateName = Field("aligned", description="aligned: the two z axes agree at rest; opposed: they point against each other")
     driver: Truth = Field(default=False, description="Only with loops or couplings: a joint that is moved, the others follow")
     fit: FitForm | None = None
+    fastening: Fastening | None = Field(None, description="How the two parts are held together, for the order of assembly")
     effort_n_mm: Number | None = Field(None, description="Largest torque of a turning joint")
     velocity_deg_s: Number | None = Field(None, description="Largest speed of a turning joint")
     effort_n: Number | None = Field(None, description="Largest force of a sliding joint")

@@ -35,7 +35,20 @@ _NAMES: Final = {
 }
 _INLINE: Final = ("JointDerivation",)  # too small for a line of their own
 _SHOWN_OPTIONS: Final = 3
-_COMMON: Final = ("name", "type", "parent", "child", "mate", "driver", "fit", "effort_n_mm", "velocity_deg_s", "effort_n", "velocity_mm_s")
+_COMMON: Final = (
+    "name",
+    "type",
+    "parent",
+    "child",
+    "mate",
+    "driver",
+    "fit",
+    "fastening",
+    "effort_n_mm",
+    "velocity_deg_s",
+    "effort_n",
+    "velocity_mm_s",
+)
 
 
 def described(topic: str) -> str | None:

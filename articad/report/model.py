@@ -9,6 +9,7 @@ import numpy as np
 from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.connectors.mate import Mate
+from articad.disassembly.steps import AssemblyOrder, shown_path, words_of
 from articad.errors import ArticadError
 from articad.export.meshes import drawn_shapes
 from articad.geometry.finish import finish_of
@@ -78,6 +79,24 @@ def viewer_model(assembly: Assembly) -> Json:
         "length": _DEFAULT_LENGTH if mechanism.is_tree else float(mechanism.branch.system.length),
         "rest": np.asarray(rest).tolist(),
         "drivers": _drivers(assembly),
+    }
+
+
+def drawn_steps(assembly: Assembly, order: Json) -> Json:
+    """Return the steps of an order of assembly as the page plays them: what is new, what is in place, and the path."""
+    index = {name: number for number, name in enumerate(assembly.mechanism.parts)}
+    size = _size(assembly)
+    return {
+        "steps": [
+            {
+                "parts": [index[name] for name in step.parts],
+                "onto": [index[name] for name in step.onto],
+                "path": shown_path(step, size).tolist(),
+                "at": step.at,
+                "text": f"Step {step.number}: {words_of(step)}",
+            }
+            for step in AssemblyOrder.from_json(order).steps
+        ]
     }
 
 

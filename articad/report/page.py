@@ -15,7 +15,7 @@ from importlib.resources import files
 
 from articad.assembly import Assembly
 from articad.report.icons import icon
-from articad.report.model import viewer_model
+from articad.report.model import drawn_steps, viewer_model
 from articad.report.overlaps import drawn_overlaps
 from articad.report.sections import Documents, all_sections, badges, facts_about, summary, total_mass
 
@@ -35,6 +35,8 @@ def report_page(assembly: Assembly, documents: Documents | None = None, *, watch
     documents = documents or Documents()
     model = viewer_model(assembly)
     model["overlaps"] = drawn_overlaps(assembly, documents.checks, documents.certificate)
+    if documents.order is not None:
+        model["order"] = drawn_steps(assembly, documents.order)
     for part in model["parts"]:
         part["facts"] = facts_about(part["name"], documents)
     if watch is not None:

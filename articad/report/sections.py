@@ -12,6 +12,7 @@ from urllib.parse import quote
 
 from articad.aliases import Json
 from articad.assembly import Assembly
+from articad.disassembly.steps import AssemblyOrder, words_of
 from articad.findings import measured_against
 from articad.interference.statements import statements
 from articad.report.tables import Cell, Html, html_table
@@ -31,6 +32,7 @@ class Documents:
         certificate: Report `articad.certificate/2`.
         verdict: Report `articad.verdict/1`.
         audit: Report `articad.audit/1`.
+        order: Report `articad.order/1`.
         exports: Reports `articad.losses/1` by format.
         replies: Records `articad.llm/1`, in reading order.
         plan: The plan's text.
@@ -42,6 +44,7 @@ class Documents:
     certificate: Json | None = None
     verdict: Json | None = None
     audit: Json | None = None
+    order: Json | None = None
     exports: Mapping[str, Json] = field(default_factory=dict)
     replies: Sequence[Json] = ()
     plan: str | None = None
@@ -50,7 +53,7 @@ class Documents:
     @property
     def findings(self) -> list[Json]:
         """Findings of all reports, errors first, each once."""
-        reports = [self.checks, self.certificate, self.verdict, self.audit, *self.exports.values()]
+        reports = [self.checks, self.certificate, self.verdict, self.audit, self.order, *self.exports.values()]
         found = {json.dumps(finding, sort_keys=True): finding for report in reports if report for finding in report.get("findings", ())}
         return sorted(found.values(), key=lambda finding: "EWI".find(finding["code"][0]))
 
@@ -66,6 +69,7 @@ def all_sections(assembly: Assembly, documents: Documents) -> str:
             _section("Audit", _audit(documents.audit), opened=True),
             _section("Parts", _parts(assembly), opened=True),
             _section("Joints", _joints(assembly)),
+            _section("Order of assembly", _steps(documents.order), opened=True),
             _section("Interference", _pairs(documents.checks, known)),
             _section("Proven motion", _certificate(documents.certificate, known)),
             _section("Least clearances over the motion", _clearances(documents.certificate, known)),
@@ -184,6 +188,25 @@ def _audit(audit: Json | None) -> str:
         f"<p>{escape(audit['file'])}: {audit['links']} links, {audit['joints']} joints that move; motion {escape(audit['motion'])}.</p>"
         + _scroll(html_table(["engine", "the file"], engines))
         + (f"<h3>Not looked at</h3><ul>{undone}</ul>" if undone else "")
+    )
+
+
+def _steps(order: Json | None) -> str:
+    """Return the steps of an order of assembly, each with a button that plays it."""
+    if order is None:
+        return ""
+    rows: list[list[Cell]] = []
+    for index, step in enumerate(AssemblyOrder.from_json(order).steps):
+        told = [words_of(step), *(f"{name}: {how}." for name, how in step.fastened.items())]
+        if step.assembly != order["name"]:
+            told.insert(0, f"{step.assembly}:")
+        strength = Html(f'<span class="{"good" if step.strength == "proven" else "warn"}">{step.strength}</span>') if step.moves else None
+        button = Html(f'<button type="button" data-step="{index}" aria-label="Play step {step.number}">▶</button>')
+        rows.append([str(step.number), " ".join(told), strength, button])
+    return (
+        '<p><button type="button" id="all-steps">▶ Play all steps</button></p>'
+        + _scroll(html_table(["step", "what", "path", ""], rows, numbers=(0,)))
+        + f'<p class="quiet">{escape(order["not_checked"])}</p>'
     )
 
 

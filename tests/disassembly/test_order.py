@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 
 import manifold3d as m3
 import numpy as np
@@ -99,6 +100,36 @@ def test_a_part_that_snaps_into_place_is_a_permitted_step() -> None:
     assert order.ok
     assert order.steps[1].strength == "permitted"
     assert order.steps[1].permitted == (("thing", "box", "snap"),)
+
+
+def test_screws_and_adhesive_do_not_let_shapes_through_each_other() -> None:
+    for how in ("screw", "adhesive"):
+        order = ordered({"box": BOX + LID, "thing": INSIDE}, [fixed("b", "box", "thing")], "box", fastenings={"b": how})
+        assert not order.ok
+
+
+def test_how_parts_are_fastened_is_stated_at_the_step_that_joins_them() -> None:
+    glued = replace(fixed("b", "box", "thing"), fastening="adhesive")
+    order = ordered({"lid": LID, "thing": INSIDE, "box": BOX}, [fixed("a", "box", "lid"), glued], "box", fastenings={"a": "snap"})
+    assert [step.fastened for step in order.steps] == [{}, {"b": "adhesive"}, {"a": "snap"}]
+    assert [step.strength for step in order.steps] == ["proven"] * 3  # the lid has a free way, too
+
+
+def test_a_pair_that_is_bought_as_one_is_never_taken_apart() -> None:
+    bearing = {"ring": BOX + LID, "inner": INSIDE, "seat": block((-5, 45), (-5, 45), (-10, 0))}
+    joints = [replace(fixed("b", "ring", "inner"), fastening="purchased"), fixed("s", "seat", "ring")]
+    order = ordered(bearing, joints, "seat")
+    assert order.ok
+    assert names(order) == [("seat",), ("inner", "ring"), ("inner", "ring")] or names(order) == [
+        ("seat",),
+        ("ring", "inner"),
+        ("ring", "inner"),
+    ]
+    assert order.steps[1].subassembly == "ring_as_bought"
+    assert order.steps[1].permitted == (("ring", "inner", "purchased"),)
+    on_ground = ordered(bearing, joints, "ring")  # the base, too
+    assert on_ground.ok
+    assert set(on_ground.steps[0].parts) == {"ring", "inner"}
 
 
 def test_a_part_that_no_order_takes_is_taken_when_its_hint_is_followed() -> None:

@@ -147,6 +147,8 @@ function atOnce(write) {
 
 function stop() {
   player.stop();
+  cancelAnimationFrame(stepping);
+  stepping = null;
   if (view) view.busy = false;
   if (playing) {
     pressed(playing, false);
@@ -223,6 +225,57 @@ function emphasise(name) {
   view?.ask();
 }
 
+// ------------------------------------------------------------------ the steps of an assembly
+
+const STEP = 1800, BEFORE = 500, AFTER = 900; // ms: along a path, before it, and until the next step
+let stepping = null; // what was asked of the browser while a step is played
+let assembled = true;
+
+// A point of a path at a share of its length.
+function along(path, share) {
+  const lengths = path.slice(1).map((point, k) => Math.hypot(...point.map((value, axis) => value - path[k][axis])));
+  let left = share * lengths.reduce((sum, length) => sum + length, 0);
+  for (let k = 0; k < lengths.length; k++) {
+    if (left <= lengths[k] && lengths[k]) return path[k].map((value, axis) => value + (left / lengths[k]) * (path[k + 1][axis] - value));
+    left -= lengths[k];
+  }
+  return path[path.length - 1];
+}
+
+// Show what is in place at a step, and move what is new along its path; then the steps after it, if they are wanted.
+function playStep(index, onwards = false) {
+  if (!view) return;
+  stop();
+  const { parts, onto, path, at, text } = model.order.steps[index];
+  set(at, { others: "rest" });
+  assembled = false;
+  mechanism.parts.forEach((_, part) => show(part, parts.includes(part) || onto.includes(part)));
+  view.focus([]);
+  $("unfocus").hidden = false;
+  view.frame(onto, parts, path[0]);
+  view.shift(parts, path[0]);
+  say(text);
+  for (const row of document.querySelectorAll("tr.shown")) row.classList.remove("shown");
+  document.querySelector(`[data-step="${index}"]`)?.closest("tr")?.classList.add("shown");
+  if (matchMedia("(prefers-reduced-motion: reduce)").matches) return; // as on paper: where the path begins
+  const begun = performance.now(), moves = path.length > 1;
+  const step = (now) => {
+    const share = moves ? Math.min(Math.max((now - begun - BEFORE) / STEP, 0), 1) : 1;
+    view.shift(parts, along(path, share * share * (3 - 2 * share)));
+    if (share < 1 || (onwards && now - begun < BEFORE + (moves ? STEP : 0) + AFTER)) stepping = requestAnimationFrame(step);
+    else if (onwards && index + 1 < model.order.steps.length) playStep(index + 1, true);
+  };
+  stepping = requestAnimationFrame(step);
+}
+
+function endSteps() {
+  if (assembled) return;
+  assembled = true;
+  cancelAnimationFrame(stepping);
+  mechanism.parts.forEach((_, part) => show(part, true));
+  view.shift([], [0, 0, 0]);
+}
+
 // ------------------------------------------------------------------ tables that move the model
 
 function partIndices(names) {
@@ -244,6 +297,8 @@ function buildTables() {
       if (narrow.matches) $("stage").scrollIntoView();
     });
   }
+  for (const button of document.querySelectorAll("[data-step]")) button.addEventListener("click", () => playStep(Number(button.dataset.step)));
+  $("all-steps")?.addEventListener("click", () => playStep(0, true));
   for (const box of document.querySelectorAll("[data-visible]")) box.addEventListener("change", () => show(Number(box.dataset.visible), box.checked));
   for (const button of document.querySelectorAll("[data-part]")) {
     button.addEventListener("click", () => view && select(Number(button.dataset.part)));
@@ -368,6 +423,7 @@ function reset() {
 }
 
 function unfocus() {
+  endSteps();
   view?.focus([]);
   $("unfocus").hidden = true;
   for (const row of document.querySelectorAll("tr.shown")) row.classList.remove("shown");

@@ -95,6 +95,7 @@ export class View {
     this.sections = { x: null, y: null, z: null };
     this.explosion = 0;
     this.focused = null;
+    this.shifted = { parts: new Set(), offset: [0, 0, 0] };
     this.hovered = this.selected = -1;
     this.frames = 0;
     this.level = 2; // index in SCALES; the first frame of full quality tells which one this machine can draw
@@ -198,14 +199,30 @@ export class View {
   #offsets(poses) {
     const { parts, tree } = this.mechanism.model;
     const offsets = parts.map(() => [0, 0, 0]);
-    if (!this.explosion) return offsets;
-    for (const { from, to } of tree) {
+    for (const { from, to } of this.explosion ? tree : []) {
       const way = parts[to].explode, T = poses[from];
       for (let k = 0; k < 3; k++) {
         offsets[to][k] = offsets[from][k] + this.explosion * (T[4 * k] * way[0] + T[4 * k + 1] * way[1] + T[4 * k + 2] * way[2]);
       }
     }
+    for (const part of this.shifted.parts) for (let k = 0; k < 3; k++) offsets[part][k] += this.shifted.offset[k];
     return offsets;
+  }
+
+  // Move parts away from their place, as on their way into an assembly, and light them up; no parts: everything is in place.
+  shift(parts, offset) {
+    this.shifted = { parts: new Set(parts), offset };
+    this.#glow();
+    this.place(this.poses);
+  }
+
+  // Look at some parts, and at others that are moved by an offset, from where the camera is.
+  frame(parts, moved, offset) {
+    const box = new Box3(), way = this.camera.position.clone().sub(this.controls.target).normalize();
+    for (const part of [...parts, ...moved]) box.union(this.partBoxes[part]);
+    for (const part of moved) box.union(this.partBoxes[part].clone().translate(new Vector3(...offset)));
+    const { center, radius } = box.getBoundingSphere(new Sphere());
+    this.#stand(center, way, (Math.max(radius, 0.02 * this.size) * 1.15) / Math.sin((FIELD * Math.PI) / 360) / Math.min(1, this.perspective.aspect));
   }
 
   // Put every part where it belongs.
@@ -431,7 +448,7 @@ export class View {
 
   #glow() {
     this.groups.forEach((group, index) => {
-      const strength = index === this.selected ? 0.4 : index === this.hovered ? 0.14 : 0;
+      const strength = index === this.selected || this.shifted.parts.has(index) ? 0.4 : index === this.hovered ? 0.14 : 0;
       for (const material of group.userData.materials) material.emissive.setHex(JOINT).multiplyScalar(strength);
     });
     this.ask();
