@@ -19,6 +19,8 @@ _FROM: Final = {
     (0, -1, 0): "from behind",
 }  # fmt: skip
 
+_AXIS: Final = 1e-6  # of a unit vector: it points along an axis
+
 Vector3 = tuple[float, float, float]
 
 NOT_CHECKED = "Parts are rigid; room for hands and tools, the order of adhesives, and whether a step needs a fixture are not checked."
@@ -90,7 +92,7 @@ def shown_path(step: AssemblyStep, size: float) -> FloatArray:
     """
     points = [np.zeros(3)]
     for index, move in reversed(list(enumerate(step.moves))):
-        far = float(np.clip(move.apart_mm, *(share * size for share in _SHOWN))) if index == 0 else move.length_mm
+        far = min(max(move.apart_mm, _SHOWN[0] * size), _SHOWN[1] * size) if index == 0 else move.length_mm
         points.append(points[-1] - far * np.array(move.direction))
     return np.array(points[::-1])
 
@@ -105,9 +107,9 @@ def words_of(step: AssemblyStep) -> str:
 
 
 def _way(move: Move) -> str:
-    toward = tuple(round(value) for value in move.direction)
-    exact = max(abs(a - b) for a, b in zip(move.direction, toward, strict=True)) < 1e-6
-    way = _FROM.get(toward, "") if exact else ""  # type: ignore[call-overload]
+    x, y, z = (round(value) for value in move.direction)
+    exact = max(abs(value - round(value)) for value in move.direction) < _AXIS
+    way = _FROM.get((x, y, z), "") if exact else ""
     return way or "along ({:.3g}, {:.3g}, {:.3g})".format(*move.direction)
 
 

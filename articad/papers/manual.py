@@ -6,7 +6,6 @@ which the order of assembly has computed.
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +13,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
-from PIL import Image
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
@@ -26,9 +24,9 @@ from articad.papers.callouts import balloons, spots_of
 from articad.papers.items import Item
 from articad.papers.sheet import ROW, SMALL, DrawingSheet, Lettering, SheetLine, SheetPicture, text_width
 from articad.render.camera import Camera
+from articad.render.pictures import printed
 from articad.render.raycast import BACKGROUND, cast
 from articad.render.scene import DrawnMesh, DrawnScene, scene_of
-from articad.render.shade import reduced, shade
 from articad.render.studio import framed
 
 if TYPE_CHECKING:
@@ -103,7 +101,7 @@ class _Manual:
         sheet = self._sheet("cover", self.product.name, "Assembly manual")
         scene = self._scene(self.product.parts, self.product.at(), new=())
         camera = framed(scene, Camera.fit("iso", scene.bounds, width=round(182 * self.dots), height=round(150 * self.dots)))
-        sheet.pictures.append(SheetPicture(_MARGIN, 92.0, 182.0, 150.0, _drawn(replace(scene, items=_own(scene, self.product)), camera)))
+        sheet.pictures.append(SheetPicture(_MARGIN, 92.0, 182.0, 150.0, printed(replace(scene, items=_own(scene, self.product)), camera)))
         parts = sum(item.quantity for item in self.items)
         facts = [f"{parts} parts, {len(self.items)} items, {len(self.order.steps)} steps."]
         permitted = [step for step in self.order.steps if step.strength == "permitted"]
@@ -139,7 +137,7 @@ class _Manual:
             camera = framed(
                 scene, Camera.fit("iso", scene.bounds, width=round(wide * self.dots), height=round(high * self.dots)), margin=1.06
             )
-            sheet.pictures.append(SheetPicture(x + 2.5, y + 12.0, wide, high, _drawn(scene, camera)))
+            sheet.pictures.append(SheetPicture(x + 2.5, y + 12.0, wide, high, printed(scene, camera)))
         size = "" if item.size_mm is None else " × ".join(f"{length:.4g}" for length in item.size_mm) + " mm"
         sheet.texts += [
             Lettering(x + 2.5, y + 7.0, f"{item.number}", 3.5, bold=True),
@@ -209,7 +207,7 @@ class _Manual:
         counted: dict[int, int] = {}
         for part in step.parts:
             counted[self.number[part]] = counted.get(self.number[part], 0) + 1
-        rows = []
+        rows: list[tuple[str, ...]] = []
         for number, count in counted.items():
             item = self.item[number]
             name = item.name if count == item.quantity else ", ".join(part for part in step.parts if self.number[part] == number)
@@ -235,7 +233,7 @@ class _Manual:
         width, height = round((right - left) * self.dots), round((top - bottom) * self.dots)
         also = np.concatenate([item.vertices for item in placed.items if len(item.mesh.vertices)])
         camera = framed(scene, Camera.fit(self.view, scene.bounds, width=width, height=height), margin=1.05, also=also)
-        sheet.pictures.append(SheetPicture(left, bottom, right - left, top - bottom, _drawn(scene, camera)))
+        sheet.pictures.append(SheetPicture(left, bottom, right - left, top - bottom, printed(scene, camera)))
         middle = np.array([(left + right) / 2, (bottom + top) / 2])
         to_paper = 1.0 / (camera.mm_per_pixel * self.dots)
         sheet.scale = to_paper
@@ -291,7 +289,7 @@ class _Manual:
         x, y = min(corners, key=covered)
         if covered((x, y)) > _COVERED:
             return
-        sheet.pictures.append(SheetPicture(x, y, _INSET, _INSET, _drawn(scene, near)))
+        sheet.pictures.append(SheetPicture(x, y, _INSET, _INSET, printed(scene, near)))
         sheet.box("visible", x, y, x + _INSET, y + _INSET)
         middle, to_paper = np.array([x + _INSET / 2, y + _INSET / 2]), 1.0 / (near.mm_per_pixel * self.dots)
         centre = (points.min(axis=0) + points.max(axis=0)) / 2 - near.centre
@@ -358,20 +356,10 @@ def _points_only(points: FloatArray) -> DrawnScene:
     return DrawnScene((DrawnMesh("points", mesh, SE3.identity(), PLACED),))
 
 
-def _own(scene: DrawnScene, assembly: Assembly) -> tuple[object, ...]:
+def _own(scene: DrawnScene, assembly: Assembly) -> tuple[DrawnMesh, ...]:
     """Return the items of a scene in the colours of their parts."""
     colors = [shape.color or part.color for part in assembly.parts.values() for shape in part.visuals or part.collisions]
     return tuple(replace(item, color=color) for item, color in zip(scene.items, colors, strict=True))
-
-
-def _drawn(scene: DrawnScene, camera: Camera) -> bytes:
-    """Return a picture on white paper as PNG."""
-    fine = camera.scaled(2)
-    picture = reduced(shade(scene, fine, cast(scene, fine)), 2).astype(np.float64)
-    picture = np.clip(np.rint(picture * 255.0 / 248.0), 0, 255).astype(np.uint8)
-    stream = io.BytesIO()
-    Image.fromarray(picture).quantize(128, dither=Image.Dither.NONE).save(stream, "PNG", optimize=True)
-    return stream.getvalue()
 
 
 def _arrow(sheet: DrawingSheet, points: Sequence[FloatArray]) -> None:

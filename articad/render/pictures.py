@@ -24,7 +24,7 @@ from articad.render.annotate import Labels, annotate, room_beside
 from articad.render.camera import Camera
 from articad.render.raycast import cast
 from articad.render.scene import DrawnScene, Section, scene_of
-from articad.render.shade import overlaid, reduced, shade
+from articad.render.shade import PAPER, overlaid, reduced, shade
 from articad.render.studio import framed, studio
 
 if TYPE_CHECKING:
@@ -83,6 +83,16 @@ def picture(
     buffers = cast(scene, fine)
     image = Image.fromarray(reduced(shade(scene, fine, buffers), supersample))
     return annotate(image, scene, camera, buffers, labels=labels, axes=axes, title=title)
+
+
+def printed(scene: DrawnScene, camera: Camera) -> bytes:
+    """Return a picture without labels on white paper, as PNG with few colours."""
+    fine = camera.scaled(2)
+    pixels = reduced(shade(scene, fine, cast(scene, fine)), 2).astype(np.float64) * (255.0 / PAPER.min())
+    stream = io.BytesIO()
+    image = Image.fromarray(np.clip(np.rint(pixels), 0, 255).astype(np.uint8))
+    image.quantize(128, dither=Image.Dither.NONE).save(stream, "PNG", optimize=True)
+    return stream.getvalue()
 
 
 def render_views(
