@@ -33,11 +33,14 @@ def test_a_step_moves_what_is_new_into_its_place_and_hides_what_comes_later(open
     )
     later = {name for name in boxed().parts if name not in (*step.parts, *step.onto)}
     rest = np.array(opened(f"({AT})('thing')"))
+    opened.page.emulate_media(reduced_motion="reduce")  # nothing moves by itself: the step is shown as on paper
     opened.page.click(f'[data-step="{number}"]')
     begins = np.array(opened(f"({AT})('thing')"))
     assert set(opened(HIDDEN)) == later
     way = rest - begins  # along the path, towards the place
     assert way / np.linalg.norm(way) == pytest.approx(step.moves[0].direction, abs=1e-6)
+    opened.page.emulate_media(reduced_motion="no-preference")
+    opened.page.click(f'[data-step="{number}"]')
     until(lambda: np.allclose(opened(f"({AT})('thing')"), rest, atol=1e-6))
     assert set(opened(HIDDEN)) == later
     opened.page.click("#unfocus")
