@@ -16,6 +16,7 @@ from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.plan.short import expanded
 from articad.plan.standard_joints import STANDARD
+from benchmarks.written import GOAL, NAMES, drawn, written
 from tests.plan.samples import FILES, Json, document
 
 PRODUCTS = Path(__file__).parents[2] / "benchmarks" / "products"
@@ -237,3 +238,21 @@ def test_the_short_wardrobe_is_the_wardrobe_of_the_examples_in_two_fifths_of_the
     ]
     assert written[0] <= 0.4 * written[1]
     assert json.loads((short / "plan.json").read_text())["schema"] == "articad.short/1"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_short_form_of_a_product_has_at_most_three_fifths_of_the_characters(name: str) -> None:
+    short, long = written(name)
+    assert short <= GOAL * long
+    plan = AssemblyPlan.load(PRODUCTS / name)
+    assert not [finding for finding in check_plan(plan) if finding.severity != "info"]
+
+
+def test_a_script_that_draws_its_pins_and_bores_itself_makes_the_same_part() -> None:
+    """So the long form that is counted is one of the same product."""
+    plan = AssemblyPlan.from_json({**GATE, "joints": GATE["joints"] | {"swing": GATE["joints"]["swing"] | {"length_mm": 5, "depth_mm": 6}}})
+    dimensions = [part["dimensions"] for part in expanded(GATE)["parts"] if part["name"] == "leaf"]
+    long = drawn(SCRIPT.replace("import Box, Pos", "import *"), dimensions)
+    assert "made" not in long
+    volumes = [mass_of(Assembly.from_plan(plan, {"post": SCRIPT.encode(), "leaf": text.encode()}), "leaf").mass for text in (SCRIPT, long)]
+    assert volumes[0] == pytest.approx(volumes[1], rel=1e-9)
