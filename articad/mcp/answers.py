@@ -103,6 +103,17 @@ def proof(report: Json) -> Json:
     }
 
 
+def steps(order: Json) -> list[str] | None:
+    """Return a line for each step of an order of assembly: what is put on, and its moves with their lengths in mm."""
+    return [_step(row) for row in order.get("steps", ())] or None
+
+
+def _step(row: Json) -> str:
+    what = row.get("subassembly") or ", ".join(row["parts"])
+    moves = [f"({', '.join(f'{part:.3g}' for part in move['direction'])}) {move['length_mm']:.4g}" for move in row["moves"]]
+    return f"{what}: {', then '.join(moves) or 'start'}{'' if row['strength'] == 'proven' else ', by force'}"
+
+
 def trials(report: Json) -> list[str]:
     """Return a line for each simulator: whether it loads and stays at rest, and what its joints reached."""
     return [_trial(row) for row in report.get("engines", ())]

@@ -29,6 +29,7 @@ from articad.runs.run import write_atomically
 
 Tool = Callable[..., Awaitable[Any]]
 Dialect = Literal["build123d", "freecad"]
+Paper = Literal["manual", "bom", "drawing"]
 Format = Literal["urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd"]
 
 _BUILD_S: Final = 600.0
@@ -246,6 +247,25 @@ class Tools:
             for name, entry in report.get("exports", {}).items()
         }
         return condensed(report if detail else report | {"exports": exports}, detail=detail, keep=("exports",))
+
+    async def manual(
+        self,
+        context: Context,
+        design: Design,
+        papers: Annotated[Sequence[Paper], Field(description="written into the design's folder papers/")] = ("manual",),
+        detail: Detail = False,
+    ) -> Json:
+        """Find an order in which the parts can be put together, and write papers: assembly manual, parts list, workshop drawings."""
+        run = str(self.bench.target(str(self.bench.design(design).relative_to(self.bench.root))))
+        out = self.bench.path(f"{design}/papers")
+        reports: dict[str, Json] = {
+            name: await self.bench.run(name, f"--out={out}", on=[run], seconds=_BUILD_S, tell=_teller(context))
+            for name in dict.fromkeys(papers)
+        }
+        whole: Json = {"ok": all(report.get("ok") for report in reports.values()), **reports}
+        files = [self._shown(file) for report in reports.values() for file in report.get("files", ())]
+        steps = answers.steps(reports.get("manual", {}).get("order", {}))
+        return condensed(whole if detail else whole | {"steps": steps, "files": files}, detail=detail, keep=("steps", "files"))
 
     async def convert(self, context: Context, source: str, target: str, strict: bool = False, detail: Detail = False) -> Json:
         """Convert a URDF, MJCF or FCStd file under the root into another format; the ending says which."""

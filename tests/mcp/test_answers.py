@@ -6,7 +6,7 @@ import json
 import math
 from typing import Any
 
-from articad.mcp.answers import changed, compact, drivers, engines, losses, proof, trials, verdict
+from articad.mcp.answers import changed, compact, drivers, engines, losses, proof, steps, trials, verdict
 from articad.mcp.skill import page
 
 
@@ -98,3 +98,14 @@ def test_a_change_returns_what_is_new_and_names_what_remains() -> None:
     old, kept, new = _finding("E_COUNT", "a", "error"), _finding("W_DRIVER", "b", "warning"), _finding("E_FIT", "c", "error")
     answer = changed([old, kept], {"ok": False, "findings": [kept, new]})
     assert ([finding["code"] for finding in answer["findings"]], answer["gone"], answer["remaining"]) == (["E_FIT"], 1, ["W_DRIVER b"])
+
+
+def test_an_order_of_assembly_is_a_line_for_each_step() -> None:
+    order = {
+        "steps": [
+            {"parts": ["base"], "subassembly": None, "moves": [], "strength": "proven"},
+            {"parts": ["lid"], "subassembly": None, "moves": [{"direction": [0, 0, -1], "length_mm": 40.04}], "strength": "permitted"},
+        ]
+    }
+    assert steps(order) == ["base: start", "lid: (0, 0, -1) 40.04, by force"]
+    assert steps({}) is None

@@ -187,6 +187,10 @@ def test_a_long_certificate_can_be_cancelled_and_leaves_no_process(tmp_path: Pat
         (page,) = (await agent.client.read_resource("ui://articad/designs/leg")).contents
         assert page.mime_type == "text/html;profile=mcp-app"
         assert "jansen_leg" in page.text
+        papers = await agent.call("manual", design="leg", papers=["bom"])
+        assert papers["ok"]
+        assert papers["files"] == ["leg/papers/jansen_leg_bom.csv", "leg/papers/jansen_leg_bom.json"]
+        assert all((tmp_path / file).is_file() for file in papers["files"])
         assert page.text.startswith("<!doctype html>")
         with anyio.move_on_after(4) as scope:  # of half a minute
             await agent.call("certify", design="leg", budget_s=500)
@@ -212,6 +216,8 @@ def test_a_long_certificate_can_be_cancelled_and_leaves_no_process(tmp_path: Pat
         ("render", {"design": "link"}, "outside the root"),
         ("convert", {"source": "chest/plan.json", "target": "../x.urdf"}, "outside the root"),
         ("export", {"design": "no_such"}, "There is no no_such"),
+        ("manual", {"design": "../else"}, "not a valid name of a design"),
+        ("manual", {"design": "chest", "papers": ["../x"]}, "manual"),
         ("explain", {"code": "E_OVERLAPS"}, "Did you mean 'E_OVERLAP'"),
         ("schema", {"topic": "no such thing"}, "There is no type or page"),
         ("build_part", {"design": "chest", "part": "lid", "kernel": "blender"}, "kernel"),
