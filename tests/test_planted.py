@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import subprocess
@@ -24,36 +25,54 @@ ARTICAD = [sys.executable, "-P", "-c", "import sys; from articad.cli import main
 
 LINES = """
 new product
+new lamp --example desk_lamp
 check product
 part product tray
-build product --out run --no-pictures --export urdf,mjcf
-check run
+build product --out run --verify sampled --export urdf,mjcf
+check run --motion --joints --support
 certify run --budget 1
 verify-certificate run/certificate.json
 export run --to urdf,mjcf,step
-bom run --cuts
+bom run --cuts --to csv,xlsx
 order run
-drawing run --to svg
-audit run/export/urdf/product.urdf
-audit run/export/mjcf/product.xml
-sim run/export/urdf/product.urdf
+drawing run --to svg,pdf,dxf
+audit run/export/urdf/product.urdf --fix mended.urdf --collision pieces --report audit.html
+audit run/export/mjcf/product.xml --certify 1
+audit run/export --table
+sim run/export/urdf/product.urdf --film film.png
 convert run/export/urdf/product.urdf other.xml
 convert foreign.xml foreign.urdf
 convert run/export/step/product.step step/part.urdf
-export run --to freecad
+export run --to freecad --split --trees --drawings
+export run --to usd,sdf,glb,3mf,plan --ros robot
 pull run run/export/freecad/product.FCStd --out pulled
 install freecad --remove
 adopt run/export/mjcf/product.xml --out adopted --no-audit
-render run --size 64 --out pictures
+render run --size 64 --out pictures --section x --overlaps
+render run --size 64 --out clean --clean --transparent
+render run --size 64 --out film --motion hinge
+render run --size 64 --out viewed --renderer pyvista
 show run --no-browser --out page.html
 edit run --set width=50 --out edited --no-pictures
 replay RECORDED --out again
 batch batch.json --out made --jobs 1
 bench list
+bench draw --task arch_stone_seven --out drawn
 bench score nothing --task arch_stone_seven
+bench table nothing
+bench shapes nothing --data nowhere
+bench objects nothing --data nowhere
+memory seed
 memory list
+memory search box
+memory export cases.jsonl
+memory import cases.jsonl
+memory prune
+memory show nothing
+memory remove nothing
 completion bash
 skill print
+skill install
 doctor
 """
 RECORDED = Path(__file__).parent / "recordings" / "toy"
@@ -85,8 +104,31 @@ def marks(folder: Path) -> str:
     return mark.read_text() if mark.exists() else ""
 
 
-def test_each_command_has_a_line() -> None:
-    assert {line.split()[0] for line in LINES.split("\n") if line} | {*WITH_A_MODEL, *SERVERS} == set(COMMANDS)
+ELSEWHERE = {"bench run": "generate", "bench judge": "generate", "bench faults": "build, check and edit"}
+"""Actions that run what other lines run, and take minutes or a model."""
+HARMLESS = """
+--root --budget --no-engines --density --sandbox --out --jobs --memory --kernel --set --force --api-base --docs --no-look --strict
+--no-inspection --max-calls --max-tokens --max-cost --max-minutes --rounds --repairs --variant --model --vision-model --judge-model
+--embeddings --keep --tasks --some --kind --at-once --judge --refine --recorded --size --sheet --kerf --turn --purchased --epsilon
+--joints --pairs --no-pairs --script --fuse --no-build --srdf --keep-frames --image --part-image --review --ideas --pick --loops --collision
+--actuators --process --next --port --dir --formats --export --views --parts --explode --engine --scheduler --seconds --meshes
+"""
+"""Options that choose numbers, names, places or one of the ways that are tried without them; they start no code of their own."""
+
+
+def test_each_command_and_what_it_can_be_asked_for_has_a_line() -> None:
+    """A new command, action or option fails here until a line runs it, or somebody states why it runs nothing new."""
+    words = [line.split() for line in LINES.split("\n") if line]
+    assert {line[0] for line in words} | {*WITH_A_MODEL, *SERVERS} == set(COMMANDS)
+    for name, command in COMMANDS.items():
+        parser = argparse.ArgumentParser()
+        command.arguments(parser)
+        run = {word for line in words if line[0] == name for word in line}
+        asked = {f"{name} {choice}" for action in parser._actions if action.dest == "action" for choice in action.choices or ()}
+        assert {choice for choice in asked if choice.split()[1] not in run} <= set(ELSEWHERE)
+        flags = {flag for action in parser._actions for flag in action.option_strings if flag.startswith("--")} - {"--help"}
+        tried = {word for line in words for word in line}  # by whichever command: the same option means the same
+        assert flags - set(HARMLESS.split()) <= tried, name
 
 
 @pytest.mark.slow

@@ -84,15 +84,22 @@ def _watch(last: int | None, tally: Path | None) -> None:
         setattr(os, name, counted(getattr(os, name)))
 
 
-def undisturbed(work: Work, folder: Path) -> tuple[float, int]:
-    """Run a work to its end; return how long it took [s] and how many calls changed the file system."""
+def undisturbed(work: Work, folder: Path, begun: Path | None = None) -> tuple[float, int]:
+    """Run a work to its end; return how long it took [s] and how many calls changed the file system.
+
+    Args:
+        work: The work.
+        folder: Where it works; what is there is removed.
+        begun: What it works on, which is copied there; nothing by default.
+    """
+    _fresh(folder, begun)
     began = time.monotonic()
     assert child(work, folder) == 0
     took = time.monotonic() - began
     with tempfile.TemporaryDirectory(dir=folder.parent) as other:
         tally = Path(other) / "tally"
         counted = Path(other) / "work"
-        counted.mkdir()
+        _fresh(counted, begun)
         assert child(work, counted, tally=tally) == 0
         return took, int(tally.read_text())
 
@@ -114,11 +121,10 @@ def stages(calls: int) -> list[Point]:
     return [Point(calls=number) for number in range(1, calls + 1)]
 
 
-def resumed(work: Work, point: Point, root: Path, check: Callable[[Path], None]) -> bool:
+def resumed(work: Work, point: Point, root: Path, check: Callable[[Path], None], begun: Path | None = None) -> bool:
     """Kill a work at a point, run it again, hold the result; return whether it was killed at all."""
     folder = root / "work"
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    _fresh(folder, begun)
     killed = child(work, folder, point) == -signal.SIGKILL
     assert child(work, folder) == 0, f"killed at {point}, it does not resume"
     check(folder)
@@ -135,8 +141,7 @@ def harried(work: Work, points: Sequence[Point], root: Path, check: Callable[[Pa
     killed = failed = since = 0
     for number, point in enumerate([*points, None], start=1):
         if not since:
-            shutil.rmtree(folder, ignore_errors=True)
-            folder.mkdir(parents=True)
+            _fresh(folder, None)
         since += 1
         code = child(work, folder, point)
         if code == -signal.SIGKILL and point is not None:
@@ -152,6 +157,15 @@ def harried(work: Work, points: Sequence[Point], root: Path, check: Callable[[Pa
         if number % 50 == 0:
             sys.stderr.write(f"{number} points, {killed} kills, {failed} failed\n")
     return killed, failed
+
+
+def _fresh(folder: Path, begun: Path | None) -> None:
+    """Make a folder anew: a copy of what was begun, or empty."""
+    shutil.rmtree(folder, ignore_errors=True)
+    if begun is None:
+        folder.mkdir(parents=True)
+    else:
+        shutil.copytree(begun, folder)
 
 
 def killed_writers(store: Any, folder: Path, *, writers: int, seconds: float, seed: int) -> set[tuple[int, int]]:

@@ -42,11 +42,19 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "run"
 
 
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a run that was built."""
+    folder = tmp_path_factory.mktemp("built")
+    assert killing.child(works.build, folder) == 0
+    return folder
+
+
 def work_named(name: str, recording: Path) -> Work:
     if name == "edit":
         return lambda folder: works.edited(folder, recording)
-    if name == "proven":
-        return works.proven
+    if name in {"proven", "exported"}:
+        return works.proven if name == "proven" else works.exported
     return works.build if name == "build" else lambda folder: works.generated(folder, recording=recording)
 
 
@@ -55,7 +63,6 @@ def test_killed_with_processes_of_its_own_it_resumes_and_ends_equal(name: str, r
     """Calls of models, and workers of a batch."""
     with endpoint(recording) as address:
         work = (lambda folder: works.live(folder, address)) if name == "live" else works.batch
-        (tmp_path / "whole").mkdir()
         took, calls = killing.undisturbed(work, tmp_path / "whole")
         expected = works.files(tmp_path / "whole")
         points = killing.points(3, took, calls, seed=3) if name == "live" else killing.timed(2, took, seed=3)
@@ -63,15 +70,14 @@ def test_killed_with_processes_of_its_own_it_resumes_and_ends_equal(name: str, r
     assert any(killed)
 
 
-@pytest.mark.parametrize("name", ["build", "generate", "edit", "proven"])
-def test_killed_at_some_stages_and_times_it_resumes_and_ends_equal(name: str, recording: Path, tmp_path: Path) -> None:
-    work = work_named(name, recording)
-    (tmp_path / "whole").mkdir()
-    took, calls = killing.undisturbed(work, tmp_path / "whole")
+@pytest.mark.parametrize("name", ["build", "generate", "edit", "proven", "exported"])
+def test_killed_at_some_stages_and_times_it_resumes_and_ends_equal(name: str, recording: Path, built: Path, tmp_path: Path) -> None:
+    work, begun = work_named(name, recording), built if name in {"proven", "exported"} else None
+    took, calls = killing.undisturbed(work, tmp_path / "whole", begun)
     expected = works.files(tmp_path / "whole")
     points = random.Random(1).sample(killing.stages(calls), 4) + killing.points(4, took, calls, seed=2)
 
-    killed = [killing.resumed(work, point, tmp_path, lambda folder: _same(folder, expected)) for point in points]
+    killed = [killing.resumed(work, point, tmp_path, lambda folder: _same(folder, expected), begun) for point in points]
 
     assert sum(killed) >= len(killed) // 2
 
@@ -82,7 +88,6 @@ def _same(folder: Path, expected: object) -> None:
 
 def test_no_answer_that_was_kept_is_asked_for_again(recording: Path, tmp_path: Path) -> None:
     work = work_named("generate", recording)
-    (tmp_path / "whole").mkdir()
     _, calls = killing.undisturbed(work, tmp_path / "whole")
     steps = len((tmp_path / "whole/calls").read_bytes())
     assert steps == len(Run.view(recording).replies())

@@ -69,13 +69,25 @@ def build(folder: Path, kernel_name: str = "fixed") -> Assembly:
     return assembly
 
 
-def proven(folder: Path) -> None:
-    """What `articad certify` and `articad export` do with a run, which is built first."""
-    assembly = build(folder)
+def proven(folder: Path, kernel_name: str = "fixed") -> None:
+    """What `articad certify` does with the run in the folder."""
     with Run.open(folder / "run") as run:
-        record_certificate(run, assembly.certify(pairs=False, budget=0.1))
-        for name in ("sdf", "usd", "glb", "3mf", "plan"):
+        record_certificate(run, _restored(run, folder, kernel_name).certify(pairs=False, budget=0.1))
+
+
+def exported(folder: Path, kernel_name: str = "fixed") -> None:
+    """What `articad export` does with the run in the folder."""
+    with Run.open(folder / "run") as run:
+        assembly = _restored(run, folder, kernel_name)
+        for name in ("urdf", "mjcf", "sdf", "usd", "glb", "3mf", "plan"):
             record_export(run, assembly, name)
+
+
+def _restored(run: Run, folder: Path, kernel_name: str) -> Assembly:
+    """Return the assembly of a run, as `assembly_of` does, with a kernel of this module."""
+    scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
+    plan = AssemblyPlan.loads(run.plan_text() or "")
+    return Assembly.from_plan(plan, scripts, kernel=kernel(kernel_name), cache=BuildCache(folder / "cache"))
 
 
 def generated(folder: Path, kernel_name: str = "fixed", recording: Path | None = None) -> None:

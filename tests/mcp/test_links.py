@@ -12,7 +12,7 @@ from mcp.server.mcpserver.exceptions import ToolError
 
 from articad import examples
 from articad.errors import ReadError
-from articad.mcp.server import Tools, _told
+from articad.mcp.server import Tools, _told, make_server
 from articad.mcp.workbench import Workbench
 from tests.coroutines import finish
 
@@ -50,23 +50,61 @@ def told(root: Path, tool: str, **arguments: Any) -> str:
         return str(error)
 
 
-@pytest.mark.parametrize("tool", ["check_plan", "check", "audit", "sim", "build_parts", "verify_certificate"])
-@pytest.mark.parametrize("link", ["plan.json", "folder", "run"])
-def test_a_linked_design_is_refused_and_tells_nothing(tool: str, link: str, root: Path) -> None:
-    secret = root.parent / "secret"
-    if link == "folder":
-        away = root.parent / "away"
-        away.mkdir()
-        (away / "plan.json").write_text(SECRET)
-        (root / "bad").symlink_to(away)
-    else:
-        (root / "bad").mkdir()
-        (root / "bad" / "plan.json").symlink_to(secret)
-        if link == "run":
-            (root / "bad" / "run").symlink_to(root.parent)
-    answer = told(root, tool, design="bad")
-    assert "the-first-word" not in answer
-    assert "Traceback" not in answer
+CALLS: dict[str, dict[str, Any]] = {
+    "schema": {"topic": "NAMED"},
+    "check_plan": {"design": "NAMED"},
+    "edit_plan": {"design": "NAMED", "changes": {"name": "x"}},
+    "build_part": {"design": "NAMED", "part": "lid", "script": "x = 1"},
+    "build_parts": {"design": "NAMED", "files": {"lid": "bad/plan.json"}},
+    "build": {"design": "NAMED"},
+    "check": {"design": "NAMED"},
+    "certify": {"design": "NAMED", "budget_s": 1.0},
+    "verify_certificate": {"design": "NAMED"},
+    "audit": {"design": "NAMED"},
+    "sim": {"design": "NAMED"},
+    "render": {"design": "NAMED"},
+    "export": {"design": "NAMED", "formats": ["urdf"]},
+    "convert": {"source": "NAMED", "target": "other.xml"},
+    "adopt": {"source": "NAMED", "design": "adopted"},
+    "edit_parameters": {"design": "NAMED", "values": {"width": 900.0}},
+    "explain": {"code": "NAMED"},
+    "docs": {"dialect": "build123d", "intent": "NAMED"},
+}
+"""A call of each tool that is asked about a design or a file which is, or holds, a link out of the root."""
+
+
+def test_each_tool_has_a_call() -> None:
+    async def names() -> set[str]:
+        return {tool.name for tool in await make_server(".").list_tools()}
+
+    assert finish(names()) == set(CALLS)
+
+
+@pytest.mark.parametrize("tool", CALLS)
+def test_a_linked_design_or_file_is_refused_and_tells_nothing(tool: str, root: Path) -> None:
+    """The plan, the folder, the run, the scripts' folder or the file itself is a link; no link is written through either."""
+    secret, away = root.parent / "secret", root.parent / "away"
+    (away / "parts").mkdir(parents=True)
+    (away / "plan.json").write_text(SECRET)
+    for name in ("plan", "within"):
+        (root / name).mkdir()
+        (root / name / "plan.json").write_bytes((root / "box" / "plan.json").read_bytes())
+    (root / "plan" / "plan.json").unlink()
+    (root / "plan" / "plan.json").symlink_to(secret)
+    (root / "within" / "run").symlink_to(away)
+    (root / "within" / "parts").symlink_to(away / "parts")
+    (root / "bad").symlink_to(away)
+    (root / "bad.urdf").symlink_to(secret)
+    (root / "other.xml").symlink_to(secret)
+    before = {path: path.read_bytes() for path in root.parent.rglob("*") if path.is_file() and not path.is_relative_to(root)}
+    for named in ("plan", "within", "bad", "bad.urdf", "../secret", "bad/plan.json"):
+        arguments = {key: named if value == "NAMED" else value for key, value in CALLS[tool].items()}
+        answer = told(root, tool, **arguments)
+        assert "the-first-word" not in answer, named
+        assert "Traceback" not in answer, named
+        assert named == "within" or '"ok":true' not in answer.replace(" ", ""), named  # its plan is sound
+    after = {path: path.read_bytes() for path in root.parent.rglob("*") if path.is_file() and not path.is_relative_to(root)}
+    assert before == after
 
 
 def test_a_linked_script_is_not_read(root: Path) -> None:
