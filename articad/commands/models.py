@@ -9,7 +9,21 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from articad.commands.command import argument, command
-from articad.commands.options import ANSWERING, BUDGET, EXPORT, FORCE, GENERATING, JOBS, MODELS, OUT, PICTURES, SANDBOX, SET, TEACHING
+from articad.commands.options import (
+    ANSWERING,
+    BUDGET,
+    EXPORT,
+    FORCE,
+    GENERATING,
+    JOBS,
+    MODELS,
+    OUT,
+    PICTURES,
+    SANDBOX,
+    SET,
+    TEACHING,
+    words,
+)
 from articad.commands.steps import build_cache, draw, experience, reported, sandbox_level
 
 if TYPE_CHECKING:
@@ -25,7 +39,7 @@ if TYPE_CHECKING:
 @command(
     "generate",
     "Let a model write the plan and the part scripts from your description; then build, check and export the product.",
-    argument("text", metavar="TEXT", help="description of the product"),
+    argument("text", metavar="TEXT", type=words, help="description of the product"),
     *ANSWERING,
     *GENERATING,
     OUT,
@@ -58,7 +72,12 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     "Edit a finished run by a description or by parameter values, and prove that nothing else changed.",
     argument("run", metavar="RUN"),
     argument(
-        "text", metavar="TEXT", nargs="?", default="", help="the change to make; without it, only --set applies and no model is called"
+        "text",
+        metavar="TEXT",
+        type=words,
+        nargs="?",
+        default="",
+        help="the change to make; without it, only --set applies and no model is called",
     ),
     SET,
     *ANSWERING,

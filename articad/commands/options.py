@@ -22,6 +22,13 @@ def formats(text: str) -> tuple[str, ...]:
     return names
 
 
+def words(text: str) -> str:
+    """Read a text that goes to a model or into a record."""
+    if any("\ud800" <= character <= "\udfff" for character in text):  # stand for bytes that are not UTF-8
+        raise argparse.ArgumentTypeError("the text is not UTF-8")
+    return text
+
+
 def assignment(text: str) -> tuple[str, str]:
     """Read `NAME=VALUE`."""
     name, sign, value = text.partition("=")

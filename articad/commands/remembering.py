@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from articad.commands.command import argument, command
-from articad.commands.options import API_BASE, EMBEDDINGS, MEMORY, positive
+from articad.commands.options import API_BASE, EMBEDDINGS, MEMORY, positive, words
 from articad.commands.steps import experience
 from articad.files import RECORD_BYTES, read_file
 
@@ -35,7 +35,9 @@ _WORDS: Final = 60  # characters of a request in a table
     "memory",
     "List, search, fill or prune the experience of earlier runs.",
     argument("action", choices=list(_WHAT), help="what to do"),
-    argument("what", nargs="?", metavar="ID|TEXT|FILE", help="a case to show or remove; a request to search for; a file of cases"),
+    argument(
+        "what", type=words, nargs="?", metavar="ID|TEXT|FILE", help="a case to show or remove; a request to search for; a file of cases"
+    ),
     MEMORY,
     EMBEDDINGS,
     API_BASE,

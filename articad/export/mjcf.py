@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -116,6 +116,13 @@ def write_mjcf(
     return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses, Findings(assumed_finding(assumed)))
 
 
+def rewritten(assembly: Assembly) -> Iterator[list[Any]]:
+    """Yield the bodies and constraints that `write_mjcf` writes, with the parts' own meshes for collision."""
+    again = Again(assembly)
+    model = lower(assembly, () if again.active or _starts_at_world(assembly) else RESERVED, as_it_came=assembly.foreign)
+    yield _Writer(assembly, model, MeshFiles(), again).mechanism()
+
+
 def _starts_at_world(assembly: Assembly) -> bool:
     return assembly.foreign and ground_is_world(assembly)
 
@@ -169,6 +176,15 @@ class _Writer:
         if not len(self.asset):
             root.remove(self.asset)
         return root
+
+    def mechanism(self) -> list[Any]:
+        """Return the bodies and the constraints between them alone."""
+        root = etree.Element("mujoco")
+        self.asset = etree.Element("asset")
+        world = child(root, "worldbody")
+        self._bodies(world)
+        self._equalities(root)
+        return [world, *root.iterfind("equality")]
 
     def _has_the_files_joints(self, world: Any) -> bool:
         """True if the joints are those of the file, in its order, so that the values of its keys are valid."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -90,6 +90,13 @@ def write_sdf(
         refuse(losses)
     assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
     return Bundle({f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses, Findings(assumed_finding(assumed)))
+
+
+def rewritten(assembly: Assembly) -> Iterator[list[Any]]:
+    """Yield the links and joints that `write_sdf` writes, with the parts' own meshes for collision."""
+    lowered = lower(assembly, () if ground_is_world(assembly) else RESERVED, part_frames=assembly.foreign)
+    root = _Writer(assembly, lowered, MeshFiles()).document()
+    yield [*root.iterfind("model/link"), *root.iterfind("model/joint")]
 
 
 class _Kept:

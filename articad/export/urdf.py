@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from lxml import etree
 
 from articad.connectors.se3 import SE3
+from articad.errors import ExportError
 from articad.export.bundle import Bundle
 from articad.export.closing import TiedPoint, tied_points
 from articad.export.collisions import Collision, adjacent, collide, contact_feature, excuse, kind_of
@@ -122,6 +124,26 @@ def write_urdf(
         main = {f"{kind}/{model.name}.{kind}": content for kind, content in documents.items()}
         main |= package_files(package, model.name, [*documents, files.folder])
     return Bundle({**main, **files.files}, losses, Findings(assumed_finding(_assumed(model, keeper, all_of=True))))
+
+
+def rewritten(assembly: Assembly) -> Iterator[list[Any]]:
+    """Yield the links and joints that `write_urdf` writes, for each choice that changes them, without collision geometry."""
+    for keep_frames in (False, True):
+        model = lower(assembly, part_frames=keep_frames)
+        keeper = _Keeper(assembly, model)
+        follows = as_stated(followers(model, leaders(assembly)), model, keeper.stated_couplings(assembly))
+        yield _alone(model, follows, keeper)
+        if model.loops:
+            with contextlib.suppress(ExportError):
+                yield _alone(model, follows | linear_followers(assembly, model), keeper)
+
+
+def _alone(model: LoweredModel, follows: dict[str, Follows], keeper: _Keeper) -> list[Any]:
+    root, files = etree.Element("robot"), MeshFiles()
+    files.expect(link.part for link in model.links)
+    _tree(root, model, follows, files, keeper)
+    keeper.write(root)
+    return [*root.iterfind("link"), *root.iterfind("joint")]
 
 
 def _features_of_file(assembly: Assembly, model: LoweredModel, keeper: _Keeper) -> list[Feature]:

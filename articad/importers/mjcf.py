@@ -15,6 +15,7 @@ from lxml import etree
 from articad.arrays import FloatArray
 from articad.assembly import Assembly, Kept
 from articad.connectors.se3 import SE3
+from articad.export.mjcf import rewritten
 from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
@@ -65,7 +66,9 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     if document.tag != "mujoco":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <mujoco>.")
     texts = [text.get("data", "") for text in document.iterfind("custom/text") if text.get("name", "").startswith(_RECORD_PREFIX)]
-    own, edited = unedited(texts if metadata else (), [*document.iterfind("worldbody"), *document.iterfind("equality")], folder, path)
+    own, edited = unedited(
+        texts if metadata else (), [*document.iterfind("worldbody"), *document.iterfind("equality")], folder, path, rewritten
+    )
     if own is not None:
         return own
     require_closed(path, folder.root)

@@ -21,10 +21,12 @@ from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Primitive, Shape, Solid
+from articad.importers.described import Rewritten, describes
 from articad.importers.reading import LARGEST_MM, Folder, unreadable
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.resolve import Fit, Material, Waiver
+from articad.texts import SPOILED, spoiled
 
 VERSION = 1
 PRIMITIVES = ("box", "cylinder", "sphere", "capsule", "ellipsoid")
@@ -49,6 +51,8 @@ def read_records(texts: Iterable[str], path: Path) -> list[Record]:
             raise unreadable(path, "articad metadata", f"A record is not JSON: {error}.") from None
         if not isinstance(record, dict) or not isinstance(record.get("kind"), str):
             raise unreadable(path, "articad metadata", "A record is not an object with a kind.")
+        if spoiled(record) is not None:
+            raise unreadable(path, "articad metadata", f"A record holds {SPOILED}.")
         records.append(record)
     for record in records:
         if record["kind"] == "assembly" and record.get("version") != VERSION:
@@ -66,21 +70,32 @@ def stale(records: list[Record], elements: Iterable[Any], path: Path) -> list[Fi
     return [Finding(code="W_IMPORT_STALE", where=str(path), message=message, hint=hint)]
 
 
-def unedited(texts: Iterable[str], elements: Iterable[Any], folder: Folder, path: Path) -> tuple[Assembly | None, list[Finding]]:
-    """Return the assembly that a file's records describe; None if it has none, or with a finding if it was edited since.
+def unedited(
+    texts: Iterable[str], elements: Iterable[Any], folder: Folder, path: Path, rewritten: Rewritten
+) -> tuple[Assembly | None, list[Finding]]:
+    """Return the assembly that a file's records describe; None if it has none, or with a finding if they do not describe the file.
 
     Args:
         texts: The records.
         elements: The elements that tell an edit.
         folder: For the meshes.
         path: The file.
+        rewritten: Writes the assembly again; yields its elements.
 
     Raises:
         ReadError: If records are missing, or do not have the form that articad writes.
     """
-    records = read_records(texts, path)
-    edited = stale(records, elements, path) if records else []
-    return (assembly_of(records, folder, path) if records and not edited else None), edited
+    records, elements = read_records(texts, path), list(elements)
+    if not records:
+        return None, []
+    if edited := stale(records, elements, path):
+        return None, edited
+    own = assembly_of(records, folder, path)
+    if describes(own, elements, rewritten, shapes=not folder.findings):
+        return own, []
+    message = f"The articad records in {path.name} do not describe its own elements, so it is read like any other file, without them."
+    hint = "Export it again from its plan or run; if somebody else gave you the file, do not trust its records."
+    return None, [Finding(code="W_IMPORT_STALE", where=str(path), message=message, hint=hint)]
 
 
 def assembly_of(records: list[Record], folder: Folder, path: Path) -> Assembly:

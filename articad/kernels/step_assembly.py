@@ -16,6 +16,7 @@ from articad.geometry.mesh import TriMesh
 from articad.kernels.build123d import ANGLE_DEG, Build123dKernel
 from articad.kernels.results import PoisonedError, read_bytes, read_mesh
 from articad.kernels.zygote import ends_by
+from articad.texts import escaped
 
 MAX_BYTES = 256 * 2**20
 MAX_PARTS = 2000
@@ -88,10 +89,10 @@ def _parts(rows: list[dict[str, Any]], whole: TriMesh) -> tuple[StepPart, ...]:
 
 
 def _part(index: int, row: Mapping[str, Any], whole: TriMesh, taken: Counter[str]) -> StepPart:
-    product = str(row.get("product") or "")[:_NAME]
+    product = escaped(str(row.get("product") or ""))[:_NAME]
     path = row.get("path")
-    above = [str(name)[:_NAME] for name in path[:50]] if isinstance(path, list) else []
-    wanted = str(row.get("instance") or "")[:_NAME] or product or f"part_{index + 1}"
+    above = [escaped(str(name))[:_NAME] for name in path[:50]] if isinstance(path, list) else []
+    wanted = escaped(str(row.get("instance") or ""))[:_NAME] or product or f"part_{index + 1}"
     taken[wanted] += 1
     name = wanted if taken[wanted] == 1 else f"{wanted} ({taken[wanted]})"
     assert whole.face is not None

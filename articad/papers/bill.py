@@ -24,7 +24,16 @@ COLUMNS: Final = (
 )  # fmt: skip
 _WIDTHS: Final = (6, 24, 9, 18, 10, 10, 9, 9, 9, 11, 50, 28, 40)  # characters
 _DATE: Final = datetime(2000, 1, 1, tzinfo=UTC)  # equal content gives equal bytes
-_FORMULA: Final = ("=", "+", "-", "@", "\t")  # first characters of texts that programs for tables would compute
+_FORMULA: Final = (
+    "=",
+    "+",
+    "-",
+    "@",
+    "\uff1d",
+    "\uff0b",
+    "\uff0d",
+    "\uff20",
+)  # first characters of texts that programs for tables would compute
 
 
 def rows_of(items: Sequence[Item]) -> list[tuple[Any, ...]]:
@@ -109,4 +118,4 @@ def _cell(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     words = str(value)
-    return f"'{words}" if words.startswith(_FORMULA) else words
+    return f"'{words}" if words.lstrip().startswith(_FORMULA) or words[:1].isspace() else words

@@ -15,6 +15,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, Wit
 from pydantic_core import PydanticCustomError
 
 from articad.plan.expressions import MAX_CHARACTERS
+from articad.texts import SPOILED, spoiled
 
 NAME_PATTERN = r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$"
 MAX_NAME = 40  # names become URDF links, MJCF bodies, file names and keyword arguments
@@ -63,7 +64,7 @@ def _reference(parts: tuple[int, ...], form: str) -> Any:
 def _number(value: Any) -> float | str:
     if isinstance(value, str):
         if len(value) <= MAX_CHARACTERS:
-            return value
+            return _text(value)
         raise PydanticCustomError("plan_expression_length", "too long")
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise _wrong(NUMBER_FORM)
@@ -109,6 +110,8 @@ def _color(value: Any) -> str:
 def _text(value: Any) -> str:
     if not isinstance(value, str):
         raise _wrong("text in quotes")
+    if spoiled(value) is not None:
+        raise _wrong(f"text without {SPOILED}")
     return value
 
 

@@ -17,6 +17,7 @@ from articad.findings import Finding, Findings
 from articad.plan.fields import NAME_RULE, PlanObject, is_name
 from articad.plan.joint_forms import JOINT_TYPES, JointForm
 from articad.plan.short import expanded
+from articad.texts import escaped
 
 F = TypeVar("F", bound=PlanObject)
 Location = tuple[str | int, ...]
@@ -139,7 +140,7 @@ def _refused(findings: Sequence[Finding]) -> PlanError:
 
 
 def _finding(code: str, where: str, message: str, hint: str) -> Finding:
-    return Finding(code=code, where=where, message=message, hint=hint)
+    return Finding(code=code, where=escaped(where), message=escaped(message), hint=hint)  # they quote what may not be text
 
 
 # ---------------------------------------------------------------- one of pydantic's errors

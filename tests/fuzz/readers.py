@@ -11,6 +11,8 @@ import io
 import json
 import math
 import os
+import resource
+import signal
 import struct
 import tempfile
 import zipfile
@@ -33,6 +35,7 @@ from articad.certificates.verifier import verify_file
 from articad.errors import ArticadError, ReadError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh_files import read_mesh
+from articad.importers import mjcf_compiled
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.sdf import read_sdf
@@ -86,10 +89,45 @@ def urdf(content: bytes) -> None:
         _used(read_urdf(path))
 
 
+def compile_in_forks() -> None:
+    """Let MuJoCo compile in forks of this process from now on: a hundred times as many inputs as with a new process for each."""
+    import mujoco  # noqa: F401 - forks have it then
+
+    mock.patch("articad.importers.mjcf.compiled_mjcf", _compiled_in_fork).start()
+
+
+def _compiled_in_fork(path: Path, root: Path) -> mjcf_compiled.Compiled:
+    """Return what `compiled_mjcf` returns; a crash of MuJoCo is an answer, as it is there."""
+    folder = _folder(os.getpid()) / "compiled"
+    folder.mkdir(exist_ok=True)
+    (folder / "model").unlink(missing_ok=True)
+    pid = os.fork()
+    if pid == 0:
+        try:
+            for crash in (signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGBUS, signal.SIGILL, signal.SIGALRM):
+                signal.signal(crash, signal.SIG_DFL)  # not the fuzzer's, which would take them for faults of the reader
+            resource.setrlimit(resource.RLIMIT_CPU, (10, 10))
+            os.chdir(folder)
+            with mock.patch("articad.kernels.sandbox.keep_to"):
+                mjcf_compiled.main([str(path.resolve()), str(root.resolve())])
+        finally:
+            os._exit(0)
+    os.waitpid(pid, 0)
+    if not (folder / "model").exists():
+        raise ReadError("MuJoCo's compiler ended without a model.", path=str(path))
+    return mjcf_compiled._read((folder / "model").read_bytes(), path)
+
+
 def mjcf(content: bytes) -> None:
     """An MJCF file beside one mesh."""
     with _file(".xml", content) as path:
         _used(read_mjcf(path))
+
+
+def xacro(content: bytes) -> None:
+    """A xacro file, which a process of its own expands."""
+    with _file(".xacro", content) as path:
+        _used(read_urdf(path))
 
 
 def sdf(content: bytes) -> None:
@@ -257,6 +295,7 @@ READERS: Mapping[str, Callable[[bytes], None]] = {
     "plan": plan,
     "expression": expression,
     "urdf": urdf,
+    "xacro": xacro,
     "mjcf": mjcf,
     "sdf": sdf,
     "fcstd": fcstd,

@@ -1,0 +1,96 @@
+"""Whether the records in a file describe the file's own elements: a stranger can write any records, with a fingerprint that fits.
+
+The assembly that the records give is written again, and both files are reduced to what other programs see of the mechanism: links with
+their masses, visual shapes and their places, joints with their frames, axes and limits. Numbers may differ by rounding. Left out is what
+writers choose from settings or derive: collision geometry, efforts, velocities and damping.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, Final
+
+from lxml import etree
+
+from articad.assembly import Assembly
+from articad.errors import ArticadError
+
+__all__ = ["describes"]
+
+Rewritten = Callable[[Assembly], Iterator[Sequence[Any]]]
+"""Writes an assembly again, in each way that changes what is compared, and yields the elements that the records are about."""
+
+_LEFT_OUT: Final = frozenset({"collision", "record", "records", "dynamics", "effort", "velocity", "safety_controller"})
+_SHAPES: Final = frozenset({"visual", "geom"})
+_FREE: Final = frozenset({"effort", "velocity", "damping", "frictionloss", "actuatorfrcrange", "material", "rgba"})
+_FILES: Final = frozenset({"filename", "file", "uri"})
+_RELATIVE, _ABSOLUTE = 1e-6, 1e-9  # m, kg, rad; formats are written with full digits
+
+
+def describes(own: Assembly, elements: Iterable[Any], rewritten: Rewritten, *, shapes: bool = True) -> bool:
+    """Return whether an assembly that records gave is what the elements of its file state.
+
+    Args:
+        own: The assembly.
+        elements: The elements of the file.
+        rewritten: Writes the assembly again.
+        shapes: Whether visual shapes are compared; not if their meshes are missing.
+    """
+    left_out = _LEFT_OUT if shapes else _LEFT_OUT | _SHAPES
+    stated = _skeleton(elements, left_out)
+    try:
+        return any(_equal(stated, _skeleton(again, left_out)) for again in rewritten(own))
+    except ArticadError:  # it cannot be written: then nobody wrote it from these records
+        return False
+
+
+Row = tuple[str, Mapping[str, str], str]
+"""Tag, attributes and text of an element."""
+
+
+def _skeleton(elements: Iterable[Any], left_out: frozenset[str]) -> list[Row]:
+    """Return the elements that are compared, in order."""
+    rows: list[Row] = []
+    waiting = list(elements)[::-1]
+    while waiting:
+        element = waiting.pop()
+        tag = etree.QName(element).localname if isinstance(element.tag, str) else "collision"  # comments too
+        if tag in left_out or (tag == "geom" and element.get("class") == "collision"):
+            continue
+        attributes = {name: _stem(value) if name in _FILES else value for name, value in element.attrib.items() if name not in _FREE}
+        text = (element.text or "").strip()
+        rows.append((tag, attributes, _stem(text) if tag in _FILES else text))
+        waiting += element[::-1]
+    return rows
+
+
+def _stem(name: str) -> str:
+    """Return the name of a mesh file without its folder and ending: meshes may be moved, and have two formats."""
+    return name.rpartition("/")[2].rpartition(".")[0]
+
+
+def _equal(stated: Sequence[Row], again: Sequence[Row]) -> bool:
+    if len(stated) != len(again):
+        return False
+    return all(
+        tag == tag_again
+        and attributes.keys() == attributes_again.keys()
+        and _alike(text, text_again)
+        and all(_alike(value, attributes_again[name]) for name, value in attributes.items())
+        for (tag, attributes, text), (tag_again, attributes_again, text_again) in zip(stated, again, strict=True)
+    )
+
+
+def _alike(one: str, other: str) -> bool:
+    """Return whether two texts are equal, or rows of numbers that differ by rounding."""
+    if one == other:
+        return True
+    words, others = one.split(), other.split()
+    if len(words) != len(others):
+        return False
+    try:
+        pairs = [(float(a), float(b)) for a, b in zip(words, others, strict=True)]
+    except ValueError:
+        return False
+    return all(math.isclose(a, b, rel_tol=_RELATIVE, abs_tol=_ABSOLUTE) for a, b in pairs)

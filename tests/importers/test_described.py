@@ -1,0 +1,135 @@
+"""Records that do not describe the file that holds them count for nothing, also with a fingerprint that fits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from lxml import etree
+
+from articad.assembly import Assembly
+from articad.errors import ExportError
+from articad.export import mjcf, sdf, urdf
+from articad.export.fingerprint import fingerprint
+from articad.formats import NAMED, read
+from articad.importers.described import describes
+from tests.assemblies import all_joint_kinds, four_bar, geared_pair, random_tree, rigid_ring, walker
+from tests.chains import chain
+
+FORMATS = {
+    "urdf": (".urdf", ("link", "joint")),
+    "mjcf": (".xml", ("worldbody", "equality")),
+    "sdf": (".sdf", ("model/link", "model/joint")),
+}
+REWRITTEN = {"urdf": urdf.rewritten, "mjcf": mjcf.rewritten, "sdf": sdf.rewritten}
+DERIVED = {"collision", "dynamics", "effort", "velocity", "friction", "damping", "material", "ambient", "diffuse", "scale"}
+"""What records are not compared with: what a writer derives, or chooses from its settings."""
+
+
+def elements(root: Any, form: str) -> list[Any]:
+    return [element for tag in FORMATS[form][1] for element in root.iterfind(tag)]
+
+
+def forged(root: Any, form: str) -> bytes:
+    """Return the file with the fingerprint of its present elements in its records."""
+    text = etree.tostring(root).decode()
+    now = fingerprint(elements(root, form))
+    found = re.subn(r'(fingerprint(?:"|&quot;): (?:"|&quot;))[0-9a-f]{64}', rf"\g<1>{now}", text)
+    assert found[1] == 1
+    return found[0].encode()
+
+
+def numbers(root: Any, form: str) -> Iterator[tuple[Any, str]]:
+    """Yield each attribute, "" for the text, of the elements that states numbers and is compared."""
+    for element in elements(root, form):
+        for below in element.iter(etree.Element):
+            if {above.tag for above in (below, *below.iterancestors())} & DERIVED or below.get("class") == "collision":
+                continue
+            for name, value in [*below.attrib.items(), ("", below.text or "")]:
+                if name not in {"effort", "velocity", "damping", "frictionloss", "actuatorfrcrange", "rgba"} and re.fullmatch(
+                    r"[-+.\de ]*\d[-+.\de ]*", value.strip()
+                ):
+                    yield below, name
+
+
+def changed(value: str) -> str:
+    """Return numbers of which the last differs."""
+    *others, last = value.split()
+    return " ".join([*others, repr(float(last) * 1.5 + 0.125)])
+
+
+def change(element: Any, name: str, value: str) -> None:
+    """Set an attribute, or the text."""
+    if name:
+        element.set(name, value)
+    else:
+        element.text = value
+
+
+def written(assembly: Assembly, form: str, folder: Path) -> Path:
+    return Path(NAMED[form].write(assembly).write(folder)[0])
+
+
+@pytest.fixture(scope="module")
+def made() -> list[Assembly]:
+    return [all_joint_kinds(), walker(), geared_pair(), four_bar((-0.2, 0.2)), rigid_ring(), *map(random_tree, range(8))]
+
+
+def codes(path: Path) -> Sequence[str]:
+    return read(path).findings.codes
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_each_number_of_a_mechanism_is_compared(form: str, tmp_path: Path) -> None:
+    """Each in turn is changed: the records no longer describe the file, whatever its fingerprint."""
+    path = written(chain(2), form, tmp_path)
+    assert "W_IMPORT_STALE" not in codes(path)
+    own, before = read(path), path.read_bytes()
+    count = len(list(numbers(etree.fromstring(before), form)))
+    assert count > 20
+    for place in range(count):
+        root = etree.fromstring(before)
+        element, name = list(numbers(root, form))[place]
+        change(element, name, changed(element.get(name) if name else element.text))
+        assert not describes(own, elements(root, form), REWRITTEN[form]), (etree.tostring(element), name)
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_rounding_is_no_edit(form: str, tmp_path: Path) -> None:
+    path = written(chain(2), form, tmp_path)
+    root = etree.fromstring(path.read_bytes())
+    for element, name in numbers(root, form):
+        value = element.get(name) if name else element.text
+        change(element, name, " ".join(f"{float(word):.12g}" for word in value.split()))
+    path.write_bytes(forged(root, form))
+    assert "W_IMPORT_STALE" not in codes(path)
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_an_audit_does_not_believe_records_of_another_assembly(form: str, tmp_path: Path) -> None:
+    """The elements of one file with the records of another one, whose name and parts are the same."""
+    good, bad = written(chain(3), form, tmp_path / "good"), written(chain(3), form, tmp_path / "bad")
+    root = etree.fromstring(bad.read_bytes())
+    element, name = next((e, n) for e, n in numbers(root, form) if n in {"xyz", "pos"} or e.tag == "pose")
+    change(element, name, "0 0 7" if name else "0 0 7 0 0 0")
+    bad.write_bytes(forged(root, form))
+    assert codes(good) == ()
+    assert "W_IMPORT_STALE" in codes(bad)
+
+
+@pytest.mark.parametrize("options", [{}, {"keep_frames": True}, {"loops": "mimic"}, {"package": "robot"}, {"meshes": "obj"}], ids=str)
+def test_what_options_change_is_described(options: dict[str, Any], made: list[Assembly], tmp_path: Path) -> None:
+    for number, assembly in enumerate(made):
+        with suppress(ExportError):  # not every loop is linear
+            path = Path(NAMED["urdf"].write(assembly, **options).write(tmp_path / str(number))[0])
+            assert "W_IMPORT_STALE" not in codes(path), assembly.name
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_every_kind_of_joint_loop_and_coupling_is_described(form: str, made: list[Assembly], tmp_path: Path) -> None:
+    for number, assembly in enumerate(made):
+        assert "W_IMPORT_STALE" not in codes(written(assembly, form, tmp_path / str(number))), assembly.name

@@ -1,0 +1,96 @@
+"""Characters that no XML file holds or that terminals obey: no text of a plan, a record or a STEP file brings them in."""
+
+from __future__ import annotations
+
+import copy
+import csv
+import io
+import json
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import articad
+from articad.cli import main
+from articad.errors import PlanError, ReadError
+from articad.geometry.mesh import TriMesh
+from articad.geometry.shapes import box
+from articad.importers.records import read_records
+from articad.kernels.step_assembly import _part
+from articad.papers.bill import written_csv
+from articad.plan.schema import AssemblyPlan
+from articad.texts import spoiled
+
+STARTER = json.loads((Path(articad.__file__).parent / "starter" / "plan.json").read_text())
+FOUR_BAR = json.loads((Path(__file__).parent / "fuzz" / "corpus" / "plan" / "four_bar.json").read_text())
+BAD = ("\x00", "\x08", "\x1b", "\x7f", "\x9b", "\ud800", "\udfff", "\ufffe", "\uffff")
+GOOD = "tabs\tand\nlines, naïve ☃ 🙂 שלום \u200f\u2028"
+
+
+def texts(value: Any) -> Iterator[tuple[Any, Any]]:
+    """Yield the holder and the key of every text in a document, its keys' own values included."""
+    for key in list(value) if isinstance(value, dict) else range(len(value)):
+        if isinstance(value[key], str):
+            yield value, key
+        elif isinstance(value[key], dict | list):
+            yield from texts(value[key])
+
+
+@pytest.mark.parametrize("document", [STARTER, FOUR_BAR], ids=["starter", "four_bar"])
+def test_no_text_of_a_plan_holds_what_no_file_holds(document: Any) -> None:
+    """Each text of the plan in turn, with each character in turn; a text is refused at its own place."""
+    places = list(texts(copy.deepcopy(document)))
+    assert len(places) > 40
+    for number in range(len(places)):
+        changed = copy.deepcopy(document)
+        holder, key = list(texts(changed))[number]
+        holder[key] += BAD[number % len(BAD)]
+        with pytest.raises(PlanError) as raised:
+            AssemblyPlan.loads(json.dumps(changed))
+        assert spoiled(str(raised.value)) is None
+
+
+def test_other_scripts_and_lines_are_texts() -> None:
+    document = copy.deepcopy(STARTER) | {"description": GOOD}
+    assert AssemblyPlan.loads(json.dumps(document)).description == GOOD
+
+
+@pytest.mark.parametrize("character", BAD)
+def test_no_record_holds_what_no_file_holds(character: str, tmp_path: Path) -> None:
+    """Records are JSON inside XML: their escapes bring in what XML refuses."""
+    for record in (
+        {"kind": "part", "name": f"a{character}"},
+        {"kind": "part", f"a{character}": 1},
+        {"kind": "part", "x": [{"y": [character]}]},
+    ):
+        with pytest.raises(ReadError, match="A record holds"):
+            read_records([json.dumps(record)], tmp_path / "a.urdf")
+
+
+def test_names_of_a_step_file_have_escapes_in_their_place() -> None:
+    """STEP spells any character; what the confined worker says of one ends up in names."""
+    mesh = box(1.0, 1.0, 1.0)
+    whole = TriMesh(mesh.vertices, mesh.triangles, np.zeros(len(mesh.triangles), dtype=np.int32))
+    part = _part(0, {"product": "a\x1b[2J", "instance": "b\ud800", "path": ["c\x00"], "valid": True}, whole, Counter())
+    assert (part.product, part.name, part.where) == ("a\\u001b[2J", "b\\ud800", "c\\u0000/b\\ud800")
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(1)", "\t=1", "\r=1", "\n=1", " =1", "\uff1d1"])
+def test_no_cell_of_a_parts_list_is_a_formula(text: str) -> None:
+    (cell,) = next(csv.reader(io.StringIO(written_csv(("name",), [(text,)]).decode().partition("\r\n")[2], newline="")))
+    assert cell == f"'{text}"
+
+
+@pytest.mark.parametrize(
+    "line", [["generate", "a \udcff box"], ["edit", "run", "\udcff"], ["memory", "search", "\udcff"]], ids=["generate", "edit", "memory"]
+)
+def test_a_request_that_is_no_text_is_refused(line: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    """Bytes that are not UTF-8 come as halves of surrogate pairs, which no record holds."""
+    with pytest.raises(SystemExit) as ended:
+        main(line)
+    assert ended.value.code == 2
+    assert "the text is not UTF-8" in capsys.readouterr().err
