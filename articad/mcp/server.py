@@ -18,14 +18,14 @@ from pydantic import Field
 from articad import __version__
 from articad.aliases import Json
 from articad.errors import ArticadError, ReadError, did_you_mean
+from articad.files import is_file
 from articad.findings.codes import CODES
 from articad.mcp import answers
 from articad.mcp.skill import page, section
 from articad.mcp.workbench import BRIEF_BYTES, Tell, Workbench, condensed, gathered
 from articad.plan.amending import amended
-from articad.plan.short import expanded
 from articad.processes import scratch
-from articad.runs.run import write_atomically
+from articad.runs.run import REQUEST_FILE, write_atomically
 
 Tool = Callable[..., Awaitable[Any]]
 Dialect = Literal["build123d", "freecad"]
@@ -277,8 +277,8 @@ class Tools:
         """Change parameters of the plan, build again, and say which parts changed and which are provably the same."""
         folder = self.bench.design(design)
         kept = self.bench.read(f"{design}/plan.json")
-        plan = json.loads(kept)
-        known = [entry["name"] for entry in expanded(plan).get("parameters", ())]
+        plan = self.bench.document(design)
+        known = [entry["name"] for entry in self.bench.plan(design).get("parameters", ())]
         for name in values:
             if name not in known:
                 raise ToolError(f"There is no parameter {name!r}.{did_you_mean(name, known)} There are {', '.join(known) or 'none'}.")
@@ -338,6 +338,9 @@ class Tools:
         if out.is_symlink():
             raise ReadError.at(out, f"{out.name} of {folder.name} is a link.", "Remove the link; a build makes the folder.")
         if out.exists():
+            others = [entry for entry in out.iterdir() if not entry.name.startswith(scratch.BESIDE)] if out.is_dir() else [out]
+            if others and not is_file(out / REQUEST_FILE, root=self.bench.root):
+                raise ReadError.at(out, f"{out.name} of {folder.name} is not a run.", "Move the folder away; a build makes it.")
             shutil.rmtree(out)  # the run is derived from the design
         words = [f"--out={out}", f"--kernel={kernel}", "--no-pictures"]
         report = await self.bench.run("build", *words, on=[str(folder)], seconds=_BUILD_S, tell=_teller(context))
@@ -355,8 +358,11 @@ class Tools:
         """Return the digest of each built part's mesh and its source."""
         found = {}
         for file in sorted((self.bench.root / design / "run" / "parts").glob("*/part.json")):
-            record = json.loads(self.bench.read(str(file.relative_to(self.bench.root))))
-            found[file.parent.name] = str(record["shape"]["mesh_sha256"])
+            try:
+                record = json.loads(self.bench.read(str(file.relative_to(self.bench.root))))
+                found[file.parent.name] = str(record["shape"]["mesh_sha256"])
+            except (ValueError, RecursionError, TypeError, KeyError):
+                continue  # somebody else wrote it: the part counts as changed
         return found
 
     def _shown(self, file: str) -> str:

@@ -18,9 +18,11 @@ from articad.aliases import Json
 from articad.errors import ReadError
 from articad.files import RECORD_BYTES, ROOT_VARIABLE, is_file, read_file
 from articad.plan.amending import amended
+from articad.plan.reading import MOST_LEVELS, is_nested_deeper
 from articad.plan.short import expanded, is_short
 from articad.processes import launcher, scratch
 from articad.runs.run import write_atomically
+from articad.texts import SPOILED, spoiled
 
 Tell = Callable[[float, str], Awaitable[None]]
 """Called with the elapsed seconds and the current step."""
@@ -95,8 +97,10 @@ class Workbench:
         """Save a plan as the current one of a design.
 
         Raises:
-            ReadError: If it is too large.
+            ReadError: If it is too large, or holds characters that no file should.
         """
+        if spoiled(plan) is not None:
+            raise ReadError.at(name, f"The plan holds {SPOILED}.", "Write it without them.")
         content = (json.dumps(plan, indent=1, ensure_ascii=False) + "\n").encode()
         if len(content) > PLAN_BYTES:
             raise ReadError.at(name, f"The plan has {len(content)} bytes; at most {PLAN_BYTES} are accepted.", "Use derived parts.")
@@ -104,23 +108,54 @@ class Workbench:
         write_atomically(file, content)
         return file
 
+    def plan(self, name: str) -> dict[str, Any]:
+        """Return the plan of a design in its long form, which need not be valid.
+
+        Raises:
+            ReadError: If it is not a JSON object with lists of objects.
+        """
+        return self._expanded(name, self.document(name))
+
+    def document(self, name: str) -> dict[str, Any]:
+        """Return the JSON object in a design's plan; nobody has checked it.
+
+        Raises:
+            ReadError: If it is not one.
+        """
+        self.design(name)
+        try:
+            document = json.loads(self.read(f"{name}/plan.json"))
+        except (ValueError, RecursionError) as error:  # ValueError: neither JSON nor UTF-8
+            reason = "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
+            raise ReadError.at(name, f"The plan of {name!r} cannot be read: {reason}.", "Give the whole plan.") from error
+        if not isinstance(document, dict) or is_nested_deeper(document, MOST_LEVELS):
+            raise ReadError.at(name, f"The plan of {name!r} is not a JSON object.", "Give the whole plan.")
+        return document
+
+    def _expanded(self, name: str, document: dict[str, Any]) -> dict[str, Any]:
+        try:
+            plan = dict(expanded(document))
+        except (TypeError, KeyError, AttributeError, ValueError) as error:
+            raise ReadError.at(name, f"The short plan of {name!r} has not the form of one.", "Run check_plan.") from error
+        for key in ("parameters", "parts", "joints"):
+            rows = plan.get(key, [])
+            if not isinstance(rows, list) or not all(isinstance(row, dict) and isinstance(row.get("name"), str) for row in rows):
+                raise ReadError.at(name, f"{key} of the plan of {name!r} is not a list of objects with names.", "Run check_plan.")
+        return plan
+
     def amend_plan(self, name: str, changes: Mapping[str, Any]) -> Path:
         """Replace values of a design's plan, by address.
 
         Raises:
             ReadError: If there is nothing at an address, or the plan is not JSON; it is not changed then.
         """
-        try:
-            self.design(name)
-            plan = dict(json.loads(self.read(f"{name}/plan.json")))
-        except ValueError as error:
-            raise ReadError.at(name, f"The plan of {name!r} cannot be read: {error}.", "Give the whole plan.") from error
+        plan = self.document(name)
         try:
             return self.write_plan(name, amended(plan, changes))
         except ReadError:
             if not is_short(plan):
                 raise
-        return self.write_plan(name, amended(expanded(plan), changes))  # at an address that only the long form has
+        return self.write_plan(name, amended(self._expanded(name, plan), changes))  # at an address that only the long form has
 
     def write_script(self, design: str, part: str, script: str, kernel: str) -> Path:
         """Save a part's script.
@@ -150,9 +185,8 @@ class Workbench:
     def parts(self, design: str) -> list[str]:
         """Return the names of a design's parts that need a script, as far as the plan can be read."""
         try:
-            plan = expanded(json.loads(self.read(f"{design}/plan.json")))
-            return [str(part["name"]) for part in plan["parts"] if "derive" not in part]
-        except (ValueError, TypeError, KeyError):
+            return [part["name"] for part in self.plan(design).get("parts", ()) if "derive" not in part]
+        except ReadError:
             return []
 
     def target(self, name: str) -> Path:

@@ -1,0 +1,70 @@
+"""Plans and runs under the root that somebody else wrote: each tool answers in words, whatever they hold."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from articad import examples
+from tests.mcp.test_links import CALLS, told
+
+PLANS = {
+    "nested": "[" * 100_000,
+    "objects": '{"a":' * 50_000,
+    "list": "[1, 2]",
+    "number": "5",
+    "null": "null",
+    "nothing": "",
+    "bytes": "\xff",
+    "short": '{"schema": "articad.short/1", "parts": [1], "parameters": [1]}',
+    "parts": '{"schema": "articad.plan/1", "parts": 5, "parameters": {"a": 1}, "joints": null}',
+    "surrogates": '{"schema": "articad.plan/1", "name": "\\ud800", "parameters": [{"name": "\\ud800"}]}',
+}
+RECORDS = ("[" * 100_000, "[]", "null", "{}", '{"shape": 5}', '{"shape": {"mesh_sha256": {"a": 1}}}', "\xff")
+READ_HERE = ("check_plan", "edit_plan", "build_part", "build_parts", "edit_parameters")
+"""Tools that read files in the server's own process; the others hand them to commands."""
+
+
+@pytest.mark.parametrize("plan", PLANS)
+@pytest.mark.parametrize("tool", READ_HERE)
+def test_a_plan_that_is_none_is_refused_in_words(tool: str, plan: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _no_commands(monkeypatch)
+    (tmp_path / "bad").mkdir()
+    (tmp_path / "bad" / "plan.json").write_text(PLANS[plan], encoding="latin-1")
+    answer = told(tmp_path, tool, **{key: "bad" if value == "NAMED" else value for key, value in CALLS[tool].items()})
+    assert "Traceback" not in answer
+
+
+@pytest.mark.parametrize("record", RECORDS, ids=range(len(RECORDS)))
+def test_a_run_with_strange_records_is_built_again(record: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`edit_parameters` compares shapes with those of the run before."""
+    _no_commands(monkeypatch)
+    (tmp_path / "box" / "run" / "parts" / "lid").mkdir(parents=True)
+    (tmp_path / "box" / "plan.json").write_bytes((examples.folder("wardrobe") / "plan.json").read_bytes())
+    (tmp_path / "box" / "run" / "request.json").write_text("{}")
+    (tmp_path / "box" / "run" / "parts" / "lid" / "part.json").write_text(record, encoding="latin-1")
+    answer = told(tmp_path, "edit_parameters", design="box", values={"width": 950.0})
+    assert "Traceback" not in answer
+
+
+def test_a_folder_that_is_no_run_is_not_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A build replaces the run of a design, but no other folder of that name."""
+    _no_commands(monkeypatch)
+    (tmp_path / "box" / "run").mkdir(parents=True)
+    (tmp_path / "box" / "plan.json").write_bytes((examples.folder("wardrobe") / "plan.json").read_bytes())
+    (tmp_path / "box" / "run" / "notes.txt").write_text("mine")
+    answer = told(tmp_path, "build", design="box")
+    assert (tmp_path / "box" / "run" / "notes.txt").read_text() == "mine"
+    assert "run" in answer
+    assert "is not a run" in answer
+
+
+def _no_commands(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def run(_: Any, command: str, *__: str, **___: Any) -> dict[str, Any]:
+        return {"ok": False, "schema": command, "findings": []}
+
+    monkeypatch.setattr("articad.mcp.workbench.Workbench.run", run)
+    assert json.dumps("")
