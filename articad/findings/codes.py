@@ -672,7 +672,10 @@ CODES: dict[str, Code] = {
     ),
     "E_READ": Code("import", None, "A file cannot be read.", "Check the file at the named place."),
     "W_IMPORT_STALE": Code(
-        "import", None, "A file was edited after articad wrote it, so its records are not used.", "Edit the plan and export again."
+        "import",
+        None,
+        "A file was edited after articad wrote it, or its records do not describe it, so they are not used.",
+        "Edit the plan and export again.",
     ),
     "W_IMPORT_MESH": Code(
         "import", None, "A mesh of a foreign file is left out.", "Put the mesh where the file names it, or allow its folder."

@@ -16,15 +16,14 @@ from lxml import etree
 from articad.assembly import Assembly
 from articad.errors import ArticadError
 
-__all__ = ["describes"]
+__all__ = ["describes", "names_its_meshes"]
 
 Rewritten = Callable[[Assembly], Iterator[Sequence[Any]]]
 """Writes an assembly again, in each way that changes what is compared, and yields the elements that the records are about."""
 
 _LEFT_OUT: Final = frozenset({"collision", "record", "records", "dynamics", "effort", "velocity", "safety_controller"})
 _SHAPES: Final = frozenset({"visual", "geom"})
-_FREE: Final = frozenset({"effort", "velocity", "damping", "frictionloss", "actuatorfrcrange", "material", "rgba"})
-_FILES: Final = frozenset({"filename", "file", "uri"})
+_FREE: Final = frozenset({"effort", "velocity", "damping", "frictionloss", "actuatorfrcrange", "material", "rgba", "mesh", "filename"})
 _RELATIVE, _ABSOLUTE = 1e-6, 1e-9  # m, kg, rad; formats are written with full digits
 
 
@@ -58,16 +57,33 @@ def _skeleton(elements: Iterable[Any], left_out: frozenset[str]) -> list[Row]:
         tag = etree.QName(element).localname if isinstance(element.tag, str) else "collision"  # comments too
         if tag in left_out or (tag == "geom" and element.get("class") == "collision"):
             continue
-        attributes = {name: _stem(value) if name in _FILES else value for name, value in element.attrib.items() if name not in _FREE}
-        text = (element.text or "").strip()
-        rows.append((tag, attributes, _stem(text) if tag in _FILES else text))
+        attributes = {name: value for name, value in element.attrib.items() if name not in _FREE}
+        rows.append((tag, attributes, "" if tag == "uri" else (element.text or "").strip()))
         waiting += element[::-1]
     return rows
 
 
-def _stem(name: str) -> str:
-    """Return the name of a mesh file without its folder and ending: meshes may be moved, and have two formats."""
-    return name.rpartition("/")[2].rpartition(".")[0]
+def names_its_meshes(record: Mapping[str, Any], elements: Iterable[Any]) -> bool:
+    """Return whether the record of a part names the mesh files that its link shows, in whichever folder; links of URDF and SDFormat.
+
+    Args:
+        record: The record; its form has been checked.
+        elements: The elements of the file.
+    """
+    shown: set[str] = set()
+    for element in elements:
+        if element.tag == "link" and element.get("name") == record.get("link"):
+            for below in element.iterfind("visual//*"):
+                name = below.get("filename") or (below.text if below.tag == "uri" else None)
+                shown |= {_base(name)} if name else set()
+    drawn = {_base(row["file"]) for row in record["visuals"] if row["file"] and not row.get("primitive")}
+    known = {_base(row["file"]) for row in (*record["visuals"], *record["collisions"], record["solid"] or {"file": None}) if row["file"]}
+    return not shown or (drawn <= shown <= known)
+
+
+def _base(name: str) -> str:
+    """Return the name of a file without its folder: meshes may be moved."""
+    return name.strip().rpartition("/")[2]
 
 
 def _equal(stated: Sequence[Row], again: Sequence[Row]) -> bool:

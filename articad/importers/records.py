@@ -21,7 +21,7 @@ from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Primitive, Shape, Solid
-from articad.importers.described import Rewritten, describes
+from articad.importers.described import Rewritten, describes, names_its_meshes
 from articad.importers.reading import LARGEST_MM, Folder, unreadable
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
@@ -91,7 +91,8 @@ def unedited(
     if edited := stale(records, elements, path):
         return None, edited
     own = assembly_of(records, folder, path)
-    if describes(own, elements, rewritten, shapes=not folder.findings):
+    meshes = all(names_its_meshes(record, elements) for record in records if record["kind"] == "part")
+    if meshes and describes(own, elements, rewritten, shapes=not folder.findings):
         return own, []
     message = f"The articad records in {path.name} do not describe its own elements, so it is read like any other file, without them."
     hint = "Export it again from its plan or run; if somebody else gave you the file, do not trust its records."

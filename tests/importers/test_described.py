@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -133,3 +134,15 @@ def test_what_options_change_is_described(options: dict[str, Any], made: list[As
 def test_every_kind_of_joint_loop_and_coupling_is_described(form: str, made: list[Assembly], tmp_path: Path) -> None:
     for number, assembly in enumerate(made):
         assert "W_IMPORT_STALE" not in codes(written(assembly, form, tmp_path / str(number))), assembly.name
+
+
+@pytest.mark.parametrize("form", ["urdf", "sdf"])
+def test_records_name_the_meshes_that_links_show(form: str, tmp_path: Path) -> None:
+    """The elements show one mesh, the records another of the same mass."""
+    path = written(chain(2), form, tmp_path)
+    shown = min(path.parent.glob("meshes/*.stl"))
+    shutil.copy(shown, shown.with_name("other.stl"))
+    text = path.read_text()
+    path.write_text(text.replace(f'"file": "meshes/{shown.name}"', '"file": "meshes/other.stl"'))
+    assert path.read_text() != text
+    assert "W_IMPORT_STALE" in codes(path)
