@@ -66,6 +66,7 @@ LINES: Final = (
     Line("certify run --budget 600", alone=True),
     Line("check run", alone=True),
     Line("order run", alone=True),
+    Line("manual run --out made", alone=True),
     Line("drawing run --out made", alone=True),
     Line("render run --out made", alone=True),
     Line("show run --no-browser --out made.html", alone=True),

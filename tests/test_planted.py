@@ -37,7 +37,8 @@ certify run --budget 1
 verify-certificate run/certificate.json
 export run --to urdf,mjcf,step
 bom run --cuts --to csv,xlsx
-order run
+order run --fasten hinge=purchased
+manual run --to pdf,svg,html
 drawing run --to svg,pdf,dxf
 audit run/export/urdf/product.urdf --fix mended.urdf --collision pieces --report audit.html
 audit run/export/mjcf/product.xml --certify 1
