@@ -183,7 +183,7 @@ def compared(made: Assembly, report: Json) -> Compared:
         masses=sum(part.mass is not None for part in made.parts.values()),
         differences=(*off, *joint_off),
         mm=max(far, joint_far),
-        named=tuple(f"{len(made.findings.of(code))} {code}" for code in made.findings.codes),
+        named=tuple(f"{len(made.findings.of(code))} {code}" for code in dict.fromkeys(made.findings.codes)),
         solver=f"{report['code']}, moves {moved:.1g} mm" if moved > SAME_MM else f"{report['code']}",
     )
 

@@ -52,12 +52,12 @@ def native() -> Mapping[str, bytes]:
     return bundle.files
 
 
-def steps(files: Mapping[str, bytes], *wanted: opened.Json, freecad: FreeCAD) -> list[opened.Json]:
+def steps(files: Mapping[str, bytes], *wanted: opened.Json, freecad: FreeCAD, program: Path = opened.EXAMINE) -> list[opened.Json]:
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         main = ac.Bundle(files).write(folder)[0].name
         (folder / "job.json").write_text(json.dumps({"file": main, "steps": wanted}))
-        ended = freecad.run(opened.EXAMINE, folder=folder, limits=FreeCADLimits(seconds=600.0))
+        ended = freecad.run(program, folder=folder, limits=FreeCADLimits(seconds=600.0))
         assert (folder / "report.json").is_file(), ended.said
         return list(json.loads((folder / "report.json").read_text())["steps"])
 
@@ -168,6 +168,20 @@ def test_the_command_line_divides_a_document(tmp_path: Path) -> None:
 def test_freecad_finds_every_part_of_features_mirrors_links_and_shapes(freecad: Callable[[], FreeCAD]) -> None:
     assert not verify(native(), cupboard.assembly(), freecad())
     assert not verify(alone(), metronome(), freecad())
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+@VERSIONS
+def test_values_of_frozen_parts_are_fixed_in_every_file(freecad: Callable[[], FreeCAD]) -> None:
+    """The assembly shows the parameters by a link, which has their label and their marks."""
+    (seen,) = steps(alone(), freecad=freecad(), program=Path(__file__).with_name("values_by_freecad.py"))
+    assert {label for name, (label, _) in seen.items() if name.endswith("#Parameters")} == {"Parameters (all fixed)"}
+    assert sum(name.endswith("#Parameters") for name in seen) == 2
+    for name, (label, values) in seen.items():
+        assert values, name
+        assert all(group.startswith("Fixed ") and fixed for group, fixed in values.values()), name
+        assert label.endswith(("(all fixed)", "(frozen shape)")), name
 
 
 @pytest.mark.freecad
