@@ -290,7 +290,7 @@ HEAD: Final = """\
 
 Assemblies that people made with FreeCAD, read by articad and opened by FreeCAD. *Compared* are the parts; the volume, centre and inertia of each solid; the
 pose of each part; both frames of each joint; and the mass of each part whose material FreeCAD's library has with a density. The column *largest distance* is how far
-anything stands from where FreeCAD has it. A document that articad refuses is in the table with the message. The solver's column states what FreeCAD's `solve()`
+anything stands from where FreeCAD has it; parts of several solids are read as meshes, whose centres are a thousandth of a millimetre off. A document that articad refuses is in the table with the message. The solver's column states what FreeCAD's `solve()`
 returns, and how far it then moves a part: articad reads the document as it was saved.
 """
 
@@ -345,7 +345,7 @@ def _row(document: Document, made: Assembly | str, freecad: FreeCAD) -> tuple[st
     solids = sum(len(row["solids"]) for row in report["parts"])
     counts = f"{len(report['parts'])} | {solids} | {len(report['joints'])}"
     if found is None:
-        said = str(made).partition(" Use Fixed, Revolute")[0]
+        said = str(made).partition(" Use Fixed, Revolute")[0].replace(f"{Path(FOLDER).resolve()}/", "").replace(".; ", "; ")
         return f"| {document.name} | {freecad.version_text} | {counts} | | | refused: {said} | {report['code']} |", wrong
     outcome = "equal" if not found.differences else "; ".join(found.differences)
     also = f"; {', '.join(found.named)}" if found.named else ""
