@@ -152,7 +152,8 @@ def feasible_range(mechanism: Mechanism, driver: str, at: Mapping[str, float] | 
         else:
             sides[sign] = _side_range(track, coordinate, sign)
     (upper, upper_reason), (lower, lower_reason) = sides[1], sides[-1]
-    found = _range_findings(coordinate, lower, upper, lower_reason, upper_reason)
+    ends = {joint.name: (joint.parent, joint.child) for joint in mechanism.joints}
+    found = _range_findings(coordinate, lower, upper, lower_reason, upper_reason, ends)
     return FeasibleRange(coordinate, lower, upper, lower_reason, upper_reason, Findings(found))
 
 
@@ -280,8 +281,10 @@ def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate, end
     return names, margins
 
 
-def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str, upper_reason: str) -> list[Finding]:
-    """Return findings where the declared range is larger than the loop allows."""
+def _range_findings(
+    c: Coordinate, lower: float, upper: float, lower_reason: str, upper_reason: str, ends: Mapping[str, tuple[str, str]]
+) -> list[Finding]:
+    """Return findings where the declared range is larger than the loop allows; `ends` are the two parts of each joint."""
     codes = {"dead point": "E_DEAD_POINT", "singular": "E_SINGULAR"} | {str(s): "E_NOT_FOLLOWED" for s in (Stop.STEPS, Stop.MULTIPLE)}
     found = []
     for reason, value in ((lower_reason, lower), (upper_reason, upper)):
@@ -302,9 +305,11 @@ def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str
         how = "was followed over" if code == "E_NOT_FOLLOWED" else "reaches"
         message = f"driver {c.name!r} is declared {declared}, but the loop {how} only {reached}: {why} at {shown(value, c.unit)}."
         finite = math.isfinite(lower) and math.isfinite(upper)
-        widen = f", or widen those of {reason.removeprefix('limit of ')}" if code == "E_LOOP_LIMIT" else ""
+        other = reason.removeprefix("limit of ") if code == "E_LOOP_LIMIT" else ""
+        widen = f", or widen those of {other}" if other else ""
+        limiting = ends.get(other, ends.get(other.partition(".")[0], ()))
         hint = f"Set its limits to {_inside(lower, upper, c.unit)}{widen}." if finite else _one_limit(lower, upper, c.unit)
-        found.append(Finding(code=code, where=f"joints.{c.joint}", message=message, hint=hint, value=value, unit=c.unit))
+        found.append(Finding(code=code, where=f"joints.{c.joint}", message=message, hint=hint, parts=limiting, value=value, unit=c.unit))
     return found
 
 

@@ -100,9 +100,24 @@ class _Mismatch:
         return found
 
     def _finding(self, code: str, message: str, hint: str, value: float, limit: float, unit: str) -> Finding:
-        parts = (self.joint.parent, self.joint.child)
-        where = f"joints.{self.joint.name}"
+        where, ends = f"joints.{self.joint.name}", (self.joint.parent, self.joint.child)
+        placing = {end: carried for end in ends if (carried := self._carried(end))}
+        for end, carried in placing.items():
+            hint += f" Or correct what places {end} at rest: {' and '.join(f'joint {name}' for name, _ in carried)}."
+        others = [part for carried in placing.values() for _, part in carried]
+        parts = tuple(dict.fromkeys((*ends, *others)))
         return Finding(code=code, where=where, message=message, hint=hint, parts=parts, value=value, limit=limit, unit=unit)
+
+    def _carried(self, name: str) -> list[tuple[str, str]]:
+        """Return the joints that place a part with `rest_pose: "auto"`, each with the part that carries, as far as a stated pose."""
+        joints = {joint.name: joint for joint in self.draft.joints}
+        placed_by = {part: joints[joint] for joint, part in self.draft.auto_joints.items() if joint in joints}
+        found: list[tuple[str, str]] = []
+        while name in placed_by and len(found) < len(placed_by):
+            joint = placed_by[name]
+            name = joint.parent if joint.child == name else joint.child
+            found.append((joint.name, name))
+        return found
 
     def _set(self, *keys: str) -> str:
         """Return the sentence that gives the connector the right values."""

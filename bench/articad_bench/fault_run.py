@@ -19,6 +19,8 @@ __all__ = ["KINDS", "FaultRun"]
 KINDS: Final = (*PLAN_KINDS, *SCRIPT_KINDS)
 _EACH: Final = 7  # cases of a kind, each in another product
 _RESULTS, _PAGE = "faults.json", "faults.md"
+Again = Callable[[Row], bool]
+"""Returns whether a case that has a result is tried again."""
 
 
 @dataclass(frozen=True)
@@ -51,31 +53,40 @@ class FaultRun:
         return cls([faults[place * len(faults) // some] for place in range(some)], ())
 
     def work(
-        self, out: Path, tools: Tools, *, again: bool = False, tell: Callable[[str, str], object] = lambda _case, _outcome: None
+        self,
+        out: Path,
+        tools: Tools,
+        *,
+        again: Again = lambda _row: False,
+        tell: Callable[[str, str], object] = lambda _case, _outcome: None,
     ) -> dict[str, Any]:
         """Try all cases, write `faults.json` and the page `faults.md`, and return the report.
 
-        The results are written after every case, and a case whose plan and scripts are unchanged is not tried again.
+        The results are written after every case, and a case whose plan and scripts are unchanged is not tried again. Nor are good
+        products that the present programs have examined.
 
         Args:
             out: Folder of both files.
             tools: What parts are built with.
-            again: Whether to try cases again that have results.
+            again: Returns whether to try a case again that has a result.
             tell: Called with each case and its outcome.
         """
         out.mkdir(parents=True, exist_ok=True)
-        rows = {} if again else _known(out / _RESULTS)
+        stored = json.loads((out / _RESULTS).read_text()) if (out / _RESULTS).is_file() else {}
+        rows, alarms = _known(stored), dict(stored.get("alarms", {}))
         for fault in self.faults:
             row = rows.get(fault.digest)
-            if row is None or row.case != fault.name:
+            if row is None or row.case != fault.name or again(row):
                 row = rows[fault.digest] = tried(fault, tools)
-                self._save(out, rows, {})
+                self._save(out, rows, alarms, stored.get("examined_by", ""))
             tell(fault.name, "same" if row.equivalent else "valid" if row.valid else "escaped" if row.escaped else row.stage)
-        alarms = {product.name: [str(one) for one in examined(product, tools).findings] for product in self.products}
-        return self._save(out, rows, alarms)
+        if stored.get("examined_by") != programs() or not {product.name for product in self.products} <= set(alarms):
+            alarms = {product.name: [str(one) for one in examined(product, tools).findings] for product in self.products}
+        return self._save(out, rows, alarms, programs())
 
-    def _save(self, out: Path, rows: Mapping[str, Row], alarms: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-        told = report([rows[fault.digest] for fault in self.faults if fault.digest in rows], alarms, planned=len(self.faults))
+    def _save(self, out: Path, rows: Mapping[str, Row], alarms: Mapping[str, Sequence[str]], examined_by: str) -> dict[str, Any]:
+        tried_ones = [rows[fault.digest] for fault in self.faults if fault.digest in rows]
+        told = report(tried_ones, alarms, planned=len(self.faults), examined_by=examined_by)
         for name, text in ((_RESULTS, json.dumps(told, indent=1) + "\n"), (_PAGE, page(told, KINDS))):
             fresh = out / f"{name}.new"
             fresh.write_text(text)
@@ -83,7 +94,7 @@ class FaultRun:
         return told
 
 
-def _known(file: Path) -> dict[str, Row]:
+def _known(stored: Mapping[str, Any]) -> dict[str, Row]:
     """Return earlier results by digest, except defects: those are tried again."""
-    rows = rows_of(json.loads(file.read_text())) if file.is_file() else []
+    rows = rows_of(stored) if stored else []
     return {row.digest: row for row in rows if row.stage != "defect"}
