@@ -14,7 +14,7 @@ from articad.agents.retrieval import Memory, NoMemory, listed_cases
 from articad.errors import OutputError, PlanError, ReadError
 from articad.findings import Finding, Findings
 from articad.plan.amending import amended
-from articad.plan.check import check_plan
+from articad.plan.remedies import advised
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import RunRequest
 
@@ -215,7 +215,7 @@ def judged(text: str, step: str) -> Judged:
         return None, error.findings, error
     except PlanError as error:
         return None, error.findings, None
-    return plan, check_plan(plan), None
+    return plan, advised(plan), None
 
 
 def _instructions() -> str:

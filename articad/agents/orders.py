@@ -5,17 +5,19 @@ Decided by proof, from the bores, pins, sockets and balls of joints and from the
 - if a dimension of its part has no effect;
 - if its part alone has nothing round about the axis of a joint, or has its bore or pin beside it;
 - if a bore or pin that makes a joint has a diameter that none of its dimensions states;
-- if such a bore is closed at a depth that its dimensions do not give;
+- if it alone is ordered with a clearance, and the surfaces of both parts touch where a fit demands a gap;
+- if such a bore takes its pin, but is closed at a depth that its dimensions do not give;
 - if its shape, mirrored, turned or shifted as a whole, has no fault (`misplaced`).
 
-What else is wrong about such a part may follow from that, so it waits for the script. The plan is wrong if a hole or slot is absent from a
-script that follows its order, if a fit is off by just what both surfaces differ and both have the diameters that were ordered, or if its
-gap is a clearance that the plan states, or if a dimension is out of proportion to its part (W_SCALE). All faults of two parts go to the same author. Everything else stays open.
+What else is wrong about such a part may follow from that, so it waits for the script. A fault of two parts of which neither departs follows
+from the orders, so it goes to the designer. All faults of two parts go to the same author. Where a joint without
+bore and pin has faces that are neither planes, cylinders nor spheres, departures cannot be measured: its faults stay open.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple, Self
@@ -29,7 +31,7 @@ from articad.geometry.faces import Face
 from articad.interference.report import PairCheck
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
-from articad.plan.resolve import ResolvedPlan
+from articad.plan.resolve import Fit, ResolvedPlan
 from articad.plan.usage import CLEARANCE
 from articad.realisation.bores import TILT, along, beside
 from articad.realisation.sides import Sides, sides
@@ -46,7 +48,7 @@ _ON_AXIS_MM: Final = 0.2  # a pin whose axis is farther away from that of a bore
 _BESIDE: Final = 2.0  # distance from the joint's axis over the diameter: farther away, it is the bore of another joint
 _ALIKE: Final = 0.3  # difference of radii, as a share of the larger
 _ROUNDING_MM: Final = 0.005  # of a diameter
-_PLAY_MM: Final = 0.02  # difference of a measured gap and that of the surfaces
+_PLAY_MM: Final = 0.02  # a smaller clearance is none
 _WORDS: Final = {"cylinder": ("bore", "pin"), "sphere": ("socket", "ball")}
 
 
@@ -100,18 +102,25 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
     if assembly.resolved is None or not pairs:
         return Findings(several)
     joined = [_Joined.of(scene, joint) for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
-    departed = _departed(assembly, assembly.resolved, joined)
+    departed = _departed(assembly, assembly.resolved, joined) | _touching(several, assembly.resolved)
     open_ones = [one for one in several if _is_open(one, assembly.resolved, departed)]
     doubted = {name for name, part in assembly.realised.items() if part.findings.of("W_SCALE")}
     if open_ones and (found := misplaced(assembly, scene, _sources(assembly.resolved), open_ones, verdicts, doubted=doubted)) is not None:
         departed[found.part] = (
             f"All faults of {found.part} are gone if its shape is {found.how} of its frame: the script built it elsewhere."
         )
-    ordered = {one.parts for one in joined if any(_explains(one, finding) for finding in several)}
-    ordered |= pairs if doubted else set()  # what follows from such a number cannot be told from other faults
-    ordered |= {frozenset(one.parts) for one in several if one.cause in _CUT or _is_clearance(one, assembly.resolved)}
+    unmeasured = {
+        one.parts for one in joined if not one.fits and any(each.face.kind == "other" for each in (*one.sides.parent, *one.sides.child))
+    }
+    by_fit = {f"joints.{one.joint.name}.fit": one for one in joined if one.joint.name in assembly.fits}
+    fitting = {
+        one.where: _fitting(one, by_fit[one.where], assembly.fits[by_fit[one.where].joint.name], assembly.resolved)
+        for one in several
+        if one.where in by_fit
+    }
     return Findings(
-        _addressed(finding, between.get(finding.where, finding.parts), assembly.resolved, departed, ordered) for finding in several
+        _addressed(finding, between.get(finding.where, finding.parts), assembly.resolved, departed, unmeasured, fitting)
+        for finding in several
     )
 
 
@@ -133,6 +142,24 @@ def source_of(name: str, resolved: ResolvedPlan) -> str:
     return name
 
 
+def _touching(findings: Iterable[Finding], resolved: ResolvedPlan) -> dict[str, str]:
+    """Return why scripts left out a clearance, by part: a fit has no gap, and one of its two parts alone is ordered with a clearance."""
+    found: dict[str, str] = {}
+    for finding in findings:
+        if finding.code not in {"E_FIT_TIGHT", "E_FIT_CONTACT"} or finding.value is None or abs(finding.value) > _ROUNDING_MM:
+            continue
+        with_clearance = {
+            source: name
+            for source in dict.fromkeys(source_of(part, resolved) for part in finding.parts if part in resolved.parts)
+            for name, value in resolved.parts[source].dimensions.items()
+            if CLEARANCE.search(name) and value > _PLAY_MM
+        }
+        if len(with_clearance) == 1:
+            ((source, name),) = with_clearance.items()
+            found[source] = f"The fit has no gap, although {source} is ordered with {name!r}."
+    return found
+
+
 def _departed(assembly: Assembly, resolved: ResolvedPlan, joined: Sequence[_Joined]) -> dict[str, str]:
     """Return why scripts depart from their orders, by the part that has the script."""
     found: dict[str, str] = {}
@@ -144,13 +171,14 @@ def _departed(assembly: Assembly, resolved: ResolvedPlan, joined: Sequence[_Join
         for part, reason in _elsewhere(one) if not one.fits else ():
             source = source_of(part, resolved)
             found.setdefault(source, f"{source} {reason} the axis of joint {one.joint.name!r}.")
-        for surface in itertools.chain.from_iterable(one.fits):
+        for surface, mating in [pair for bore, pin in one.fits for pair in ((bore, pin), (pin, bore))]:
             source = source_of(surface.part, resolved)
             dimensions = resolved.parts[source].dimensions
             which = f"The {surface.what} of {source} in joint {one.joint.name!r}"
-            if not _is_stated(surface, dimensions):
+            goes_in = mating.diameter <= surface.diameter  # else the depth explains nothing
+            if _stated_by(surface, dimensions) is None:
                 reason = f"{which} has a diameter of {surface.diameter:.4g} mm, which none of its dimensions states."
-            elif surface.depth is not None and not _is_given(surface.depth, dimensions):
+            elif surface.depth is not None and goes_in and not _is_given(surface.depth, dimensions):
                 reason = f"{which} is {surface.depth:.4g} mm deep, which its dimensions do not give."
             else:
                 continue
@@ -163,7 +191,8 @@ def _addressed(
     parts: Sequence[str],
     resolved: ResolvedPlan,
     departed: Mapping[str, str],
-    ordered: Container[frozenset[str]],
+    unmeasured: Container[frozenset[str]],
+    fitting: Mapping[str, str],
 ) -> Finding:
     if finding.code not in _CODES:
         return finding
@@ -176,24 +205,34 @@ def _addressed(
         culprit = finding.where.removeprefix("parts.")
         follows = f"As far as it can be measured, the script of {culprit} follows its order, so the order is at fault"
         return replace(finding, route="design", hint=f"{follows}: {finding.hint[0].lower()}{finding.hint[1:]}")
-    return replace(finding, route="design") if frozenset(parts) in ordered else finding
+    if len(parts) != 2 or frozenset(parts) in unmeasured:
+        return finding
+    numbers = fitting.get(finding.where, "") if finding.code in _FITS else ""
+    return replace(finding, route="design", hint=f"{numbers} {finding.hint}".strip())
 
 
-def _explains(joined: _Joined, finding: Finding) -> bool:
-    """Return whether a fit is off by what a bore and its pin differ by, or because the pin is the thicker one."""
-    if finding.code not in _FITS or frozenset(finding.parts) != joined.parts:
-        return False
-    plays = [(bore.diameter - pin.diameter) / 2 for bore, pin in joined.fits]
-    return any(play < 0.0 or (finding.value is not None and abs(finding.value - play) < _PLAY_MM) for play in plays)
+def _fitting(finding: Finding, joined: _Joined, fit: Fit, resolved: ResolvedPlan) -> str:
+    """Return the numbers of a plan that mend a fit: a dimension of the bore or the pin, or the declared gap as it is.
 
-
-def _is_clearance(finding: Finding, resolved: ResolvedPlan) -> bool:
-    """Return whether the gap of a fit is a clearance that the plan gives to one of its parts."""
-    if finding.code not in _FITS or finding.value is None or finding.value <= 0.0:
-        return False
-    given = [resolved.parts[source_of(name, resolved)].dimensions for name in finding.parts if name in resolved.parts]
-    stated = [value for dimensions in given for name, value in dimensions.items() if CLEARANCE.search(name)]
-    return any(abs(finding.value - value) < _ROUNDING_MM for value in stated)
+    A bore of diameter D and a pin of diameter d have the gap (D - d) / 2. The new gap is the middle of the declared range.
+    """
+    if finding.value is None:
+        return ""
+    least, most = fit.gap_min or 0.0, fit.gap_max
+    meant = least if most is None else (least + most) / 2
+    offers = []
+    for bore, pin in joined.fits:
+        for surface, diameter in ((bore, pin.diameter + 2 * meant), (pin, bore.diameter - 2 * meant)):
+            source = source_of(surface.part, resolved)
+            stated = _stated_by(surface, resolved.parts[source].dimensions)
+            if stated is not None and diameter > 0.0:
+                name, times = stated
+                value = float(resolved.parts[source].dimensions[name]) + (diameter - surface.diameter) / times
+                offers.append(f"parts.{source}.dimensions.{name} to {value:.6g}")
+    if finding.value > 0.0:
+        as_it_is = [min(least, math.floor(100 * finding.value) / 100), max(most or 0.0, math.ceil(100 * finding.value) / 100)]
+        offers.append(f"{finding.where}.gap_mm to {as_it_is} if the gap is meant as it is")
+    return f"Set {', or '.join(dict.fromkeys(offers))}." if offers else ""
 
 
 def _mating(both: Sides) -> Iterator[tuple[_Round, _Round]]:
@@ -265,10 +304,10 @@ def _depth(bore: Face, faces: Iterable[Face]) -> float | None:
     return None
 
 
-def _is_stated(surface: _Round, dimensions: Mapping[str, float]) -> bool:
-    """Return whether a diameter is that of a dimension, taken as diameter or radius, with or without a clearance."""
+def _stated_by(surface: _Round, dimensions: Mapping[str, float]) -> tuple[str, int] | None:
+    """Return the dimension that states a diameter, with or without a clearance: 1 as a diameter, 2 as a radius; None if none does."""
     allowed = 2 * surface.off + _ROUNDING_MM
-    return any(abs(surface.diameter - stated) <= allowed for stated in _diameters(dimensions))
+    return next(((name, times) for name, times, stated in _diameters(dimensions) if abs(surface.diameter - stated) <= allowed), None)
 
 
 def _is_given(length: float, dimensions: Mapping[str, float]) -> bool:
@@ -278,15 +317,10 @@ def _is_given(length: float, dimensions: Mapping[str, float]) -> bool:
     return bool((np.abs(terms[:, None] + terms - length) < _ROUNDING_MM).any())
 
 
-def _diameters(dimensions: Mapping[str, float]) -> Iterator[float]:
+def _diameters(dimensions: Mapping[str, float]) -> Iterator[tuple[str, int, float]]:
+    """Yield each dimension, how many times it is taken, and the diameter that it then states, with or without a clearance."""
     lengths = {name: float(value) for name, value in dimensions.items() if not name.endswith(("_deg", "_count"))}
     clearances = [0.0, *(value for name, value in lengths.items() if CLEARANCE.search(name))]
-    for value in lengths.values():
-        for clearance in clearances:
-            for sign in (1, -1):
-                yield from (
-                    value + sign * clearance,
-                    value + 2 * sign * clearance,
-                    2 * value + sign * clearance,
-                    2 * value + 2 * sign * clearance,
-                )
+    for name, value in lengths.items():
+        for clearance, sign, times, twice in itertools.product(clearances, (1, -1), (1, 2), (1, 2)):
+            yield name, times, times * value + twice * sign * clearance

@@ -78,7 +78,7 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
     from articad.commands.steps import plan_in
     from articad.errors import PlanError
-    from articad.plan.check import check_plan
+    from articad.plan.remedies import advised
 
     try:
         plan = plan_in(options.target)
@@ -87,7 +87,7 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
             raise
         name, findings = str(options.target), error.findings
     else:
-        name, findings = plan.name, check_plan(plan)
+        name, findings = plan.name, advised(plan)
     terminal.findings(findings)
     terminal.say(f"{name}: {summaries.counted(findings)}.")
     if not findings.ok or not (options.motion or options.joints or options.support or (Path(options.target) / "request.json").is_file()):

@@ -37,7 +37,7 @@ def rest_findings(draft: Draft) -> list[Finding]:
     ]
     if not joints:
         return []
-    moved = [_identity_or(joint) for joint in joints]
+    moved = [identity_or(joint) for joint in joints]
     expected = (
         SE3.stack([_pose(draft, joint.parent) for joint in joints])
         @ SE3.stack([joint.T_parent_connector for joint in joints])
@@ -57,7 +57,7 @@ def rest_findings(draft: Draft) -> list[Finding]:
     return found
 
 
-def _identity_or(joint: Joint) -> SE3:
+def identity_or(joint: Joint) -> SE3:
     """Return J(q_rest) F of a joint."""
     J = _IDENTITY if joint.rest == joint.type.neutral else joint.motion(joint.rest)
     return J @ FLIP if joint.mate is Mate.OPPOSED else J
@@ -82,7 +82,7 @@ class _Mismatch:
         self.target = self.child if on_child else self.parent
         connector = joint.child_connector if on_child else joint.parent_connector
         self.spec = next(spec for spec in self.part.connector_specs if spec.name == connector)
-        right = expected if on_child else actual @ _identity_or(joint).inverse()
+        right = expected if on_child else actual @ identity_or(joint).inverse()
         self.in_assembly = self.spec.frame == "assembly" and not self.part.derived
         self.right = right if self.in_assembly else _pose(draft, self.part.name).inverse() @ right
 

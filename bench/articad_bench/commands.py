@@ -44,6 +44,8 @@ if TYPE_CHECKING:
     argument("--judge", metavar="NAME", dest="judges", action="append", default=[], help="a model that scores; repeat it for several"),
     argument("--tasks", metavar="DIR", help="folder of tasks (the project's own)"),
     argument("--some", metavar="N", type=positive, default=None, help="faults: only N cases, spread over all kinds (all)"),
+    argument("--case", metavar="NAME", dest="cases", action="append", default=[], help="faults: try this one again, PRODUCT:KIND or KIND"),
+    argument("--repair", action="store_true", help="faults: also follow the hints, and build what results"),
     argument("--task", metavar="NAME", dest="names", action="append", default=[], help="only this one; may be repeated"),
     argument("--kind", choices=["articulated", "static", "industrial", "hard"], default=None, help="only tasks of this kind"),
     argument(
@@ -280,16 +282,24 @@ def _faults(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.kernels.choice import kernel_named
     from articad_bench.fault_run import FaultRun
     from articad_bench.fault_table import alarms_line
-    from articad_bench.fault_trial import Tools
+    from articad_bench.fault_trial import Row as FaultRow
+    from articad_bench.fault_trial import Tools, programs
 
     tools = Tools(kernel_named("build123d", sandbox=sandbox_level(options)), build_cache(options))
     run = FaultRun.of(options.names, options.some)
+
+    def again(row: FaultRow) -> bool:
+        is_chosen = not {row.case, row.kind}.isdisjoint(options.cases)
+        is_old = row.programs != programs() or (options.repair and row.healed is None and row.counts)
+        return bool(options.force or (is_chosen and is_old))
+
     with terminal.progress("Faults", total=len(run.faults)) as tell:
-        told = run.work(Path(options.out), tools, again=options.force, tell=tell)
+        told = run.work(Path(options.out), tools, again=again, repair=options.repair, tell=tell)
     for side in ("plan", "script", "all"):
         counts = told[side]
         terminal.say(
-            f"{side}: {counts['cases']} cases, {counts['escaped']} escaped, {counts['named']} named, {counts['addressed']} addressed"
+            f"{side}: {counts['cases']} cases, {counts['escaped']} escaped, {counts['named']} named, {counts['addressed']} addressed, "
+            f"{counts['healed']} of {counts['repaired']} healed"
         )
     terminal.say(alarms_line(told))
     return told

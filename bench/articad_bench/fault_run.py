@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from articad_bench.fault_table import page, report, rows_of
-from articad_bench.fault_trial import Row, Tools, examined, tried
+from articad_bench.fault_trial import Row, Tools, examined, programs, tried
 from articad_bench.faulty import PRODUCTS, Fault, Product, chosen
 from articad_bench.plan_faults import PLAN_KINDS
 from articad_bench.script_faults import SCRIPT_KINDS
@@ -58,6 +58,7 @@ class FaultRun:
         tools: Tools,
         *,
         again: Again = lambda _row: False,
+        repair: bool = False,
         tell: Callable[[str, str], object] = lambda _case, _outcome: None,
     ) -> dict[str, Any]:
         """Try all cases, write `faults.json` and the page `faults.md`, and return the report.
@@ -69,6 +70,7 @@ class FaultRun:
             out: Folder of both files.
             tools: What parts are built with.
             again: Returns whether to try a case again that has a result.
+            repair: Whether to follow the hints of each case that is tried.
             tell: Called with each case and its outcome.
         """
         out.mkdir(parents=True, exist_ok=True)
@@ -77,7 +79,7 @@ class FaultRun:
         for fault in self.faults:
             row = rows.get(fault.digest)
             if row is None or row.case != fault.name or again(row):
-                row = rows[fault.digest] = tried(fault, tools)
+                row = rows[fault.digest] = tried(fault, tools, repair=repair)
                 self._save(out, rows, alarms, stored.get("examined_by", ""))
             tell(fault.name, "same" if row.equivalent else "valid" if row.valid else "escaped" if row.escaped else row.stage)
         if stored.get("examined_by") != programs() or not {product.name for product in self.products} <= set(alarms):

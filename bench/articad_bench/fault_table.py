@@ -13,7 +13,7 @@ __all__ = ["SCHEMA", "alarms_line", "page", "report", "rows_of"]
 
 SCHEMA: Final = "articad.bench-faults/1"
 _STAGES: Final = ("plan", "build", "evidence", "sampled")
-_COLUMNS: Final = ("cases", "same", "valid", *_STAGES, "escaped", "named", "addressed")
+_COLUMNS: Final = ("cases", "same", "valid", *_STAGES, "escaped", "named", "addressed", "repaired", "healed")
 
 _ABOUT: Final = """\
 # Planted faults
@@ -32,6 +32,10 @@ place drawn with a fixed seed. [The how-to](../how-to/benchmark.md#plant-faults)
 - **named**: a finding names a part or joint of the mistake, and its code is one of those that state this cause. An escape is not named.
 - **addressed**: all such findings of the highest severity go to whoever made the mistake, the author of the plan or of this script, without a model deciding it.
   Where a plan orders connectors or boxes elsewhere than the scripts build the features, a script departs from its order as well: either author is right.
+- **repaired**: so many cases were repaired by somebody who only does what the hints say. Hints about plans are followed one after another, in the order of
+  findings and alternatives, until the plan has no finding; what results is built and examined, at most three products. Whoever is asked about a faulty
+  script writes what was ordered.
+- **healed**: the repair ends without errors and warnings.
 """
 
 
@@ -40,13 +44,14 @@ def rows_of(stored: Mapping[str, Any]) -> list[Row]:
     return [Row(**{**row, "findings": tuple(map(tuple, row["findings"]))}) for row in stored["rows"]]
 
 
-def report(rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned: int) -> dict[str, Any]:
+def report(rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned: int, examined_by: str = "") -> dict[str, Any]:
     """Return the report of a run.
 
     Args:
         rows: One for each case that was tried.
         alarms: Findings above a note about each good product that was examined.
         planned: Number of cases of the run.
+        examined_by: Digest of the programs that examined the good products.
     """
     rows = list(rows)
     return {
@@ -59,6 +64,7 @@ def report(rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned:
         "script": _counts([row for row in rows if row.side == "script"]),
         "products": sorted({row.product for row in rows}),
         "alarms": {product: list(findings) for product, findings in alarms.items()},
+        "examined_by": examined_by,
         "rows": [row.to_json() for row in rows],
     }
 
@@ -67,7 +73,9 @@ def _counts(rows: Sequence[Row]) -> dict[str, int]:
     counted = [row for row in rows if row.counts]
     counts = {"cases": len(counted), "same": sum(row.equivalent for row in rows), "valid": sum(row.valid for row in rows)}
     counts |= {name: sum(row.stage == name for row in counted) for name in _STAGES}
-    return counts | {name: sum(getattr(row, name) for row in counted) for name in ("escaped", "named", "addressed")}
+    counts |= {name: sum(getattr(row, name) for row in counted) for name in ("escaped", "named", "addressed")}
+    repaired = [row for row in counted if row.healed is not None]
+    return counts | {"repaired": len(repaired), "healed": sum(bool(row.healed) for row in repaired)}
 
 
 def alarms_line(told: Mapping[str, Any]) -> str:
@@ -93,9 +101,9 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
     ]
     lines += [alarms_line(told) + "".join(f"\n- {name}: {alarm}" for name, found in told["alarms"].items() for alarm in found), ""]
     lines += _table(heads, [_line(name, told[name]) for name in ("plan", "script", "all")])
-    lines += [
-        f"Escaped: {_share(told['all'], 'escaped')}. Named: {_share(told['all'], 'named')}. Addressed: {_share(told['all'], 'addressed')}."
-    ]
+    shares = {"Escaped": "escaped", "Named": "named", "Addressed": "addressed"}
+    said = [f"{title}: {_share(told['all'], key)}." for title, key in shares.items()]
+    lines += [" ".join([*said, f"Hints heal: {_share(told['all'], 'healed', 'repaired')}."])]
     for side, title in (("plan", "Mistakes in plans"), ("script", "Mistakes in scripts")):
         of_side = [(kind, [row for row in rows if row.kind == kind.name]) for kind in kinds if kind.side == side]
         lines += ["", f"## {title}", ""]
@@ -128,8 +136,8 @@ def _line(name: str, counts: Mapping[str, int]) -> tuple[str, ...]:
     return (name, *(str(counts[key] or "") for key in _COLUMNS))
 
 
-def _share(counts: Mapping[str, int], key: str) -> str:
-    return f"{counts[key]} of {counts['cases']} ({100 * counts[key] / max(counts['cases'], 1):.1f} %)"
+def _share(counts: Mapping[str, int], key: str, of: str = "cases") -> str:
+    return f"{counts[key]} of {counts[of]} ({100 * counts[key] / max(counts[of], 1):.1f} %)"
 
 
 def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:

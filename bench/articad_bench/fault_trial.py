@@ -8,12 +8,17 @@ sampled check of `articad build --verify sampled` follows.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import cache
+from pathlib import Path
 from typing import Any, Final, Literal, Self
 
 import numpy as np
 
+import articad
+import articad_bench
 from articad.agents.design import DOUBTS
 from articad.agents.edit import Nobody
 from articad.agents.evidence import examine
@@ -24,15 +29,16 @@ from articad.errors import ArticadError, KernelError, PlanError
 from articad.findings import Finding, Findings
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.plan.check import check_plan
+from articad.plan.remedies import advised
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
-from articad_bench.faulty import Fault, Product
+from articad_bench.fault_repair import healed
+from articad_bench.faulty import Fault, Json, Product
 from articad_bench.reference import reference_folder
 from articad_bench.subject import Subject
 from articad_bench.task import tasks_in
 
-__all__ = ["Row", "Tools", "Trial", "examined", "tried"]
+__all__ = ["Row", "Tools", "Trial", "examined", "programs", "tried"]
 
 Stage = Literal["plan", "build", "evidence", "sampled", "none"]
 _SAME: Final = 1e-6  # relative difference of masses and places that is rounding
@@ -88,6 +94,9 @@ class Row:
         addressed: Every such finding of the highest severity goes to whoever made the mistake.
         valid: Nothing was found about a faulty plan, and the product holds every check of its task: it is another answer to the same
             request.
+        healed: Whether somebody who only does what the hints say ends with a product without errors and warnings; None if that was
+            not measured.
+        programs: Digest of the programs that judged the case.
     """
 
     case: str
@@ -103,6 +112,8 @@ class Row:
     named: bool = False
     addressed: bool = False
     valid: bool = False
+    healed: bool | None = None
+    programs: str = ""
 
     @property
     def counts(self) -> bool:
@@ -112,15 +123,31 @@ class Row:
     @classmethod
     def of(cls, fault: Fault, stage: str, found: Sequence[tuple[str, str, str, str]]) -> Self:
         """Return the row of a case that is not judged yet."""
-        return cls(fault.name, fault.good.name, fault.kind.name, fault.kind.side, fault.said, stage, tuple(found), fault.digest)
+        return cls(
+            fault.name,
+            fault.good.name,
+            fault.kind.name,
+            fault.kind.side,
+            fault.said,
+            stage,
+            tuple(found),
+            fault.digest,
+            programs=programs(),
+        )
 
     def to_json(self) -> dict[str, Any]:
         """Return the row as JSON."""
         return asdict(self)
 
 
-def tried(fault: Fault, tools: Tools) -> Row:
-    """Try one case. A defect of articad itself is the stage "defect", with its exception as the only finding."""
+def tried(fault: Fault, tools: Tools, *, repair: bool = False) -> Row:
+    """Try one case. A defect of articad itself is the stage "defect", with its exception as the only finding.
+
+    Args:
+        fault: The case.
+        tools: What parts are built with.
+        repair: Whether to follow the hints, too; the products to which they lead are built.
+    """
     try:
         trial = examined(fault.bad, tools)
         row = Row.of(fault, trial.stage, [(one.code, one.where, one.route or "", one.message) for one in trial.findings[:_SHOWN]])
@@ -132,7 +159,27 @@ def tried(fault: Fault, tools: Tools) -> Row:
     worst = [finding for finding in naming if finding.severity == naming[0].severity]
     sides = {fault.kind.side, "script"} if fault.kind.misplaces else {fault.kind.side}
     right = bool(worst) and all(_addressee(finding, fault) in sides for finding in worst)
-    return replace(row, named=bool(naming), addressed=right)
+    row = replace(row, named=bool(naming), addressed=right)
+    return replace(row, healed=_healed(fault, row, trial, tools)) if repair else row
+
+
+def _healed(fault: Fault, row: Row, trial: Trial, tools: Tools) -> bool:
+    """Return whether a repair by hints heals; the author of a faulty script who is asked about it writes what was ordered."""
+    if fault.kind.side == "script":
+        return row.named and row.addressed
+    for_design = [finding for finding in trial.findings if finding.stage == "plan" or finding.route == "design"]
+    return healed(fault, for_design, lambda plan: _checked(plan).findings, lambda product: examined(product, tools).findings)
+
+
+@cache
+def programs() -> str:
+    """Return a digest of the modules of articad and of this benchmark."""
+    found = hashlib.sha256()
+    for package in (articad, articad_bench):
+        folder = Path(str(package.__file__)).parent
+        for file in sorted(folder.rglob("*.py")):
+            found.update(f"{file.relative_to(folder)}\n".encode() + file.read_bytes())
+    return found.hexdigest()[:12]
 
 
 def examined(product: Product, tools: Tools) -> Trial:
@@ -140,13 +187,10 @@ def examined(product: Product, tools: Tools) -> Trial:
 
     Warnings of a step are kept, and the next step follows.
     """
-    try:
-        plan = AssemblyPlan.from_json(product.plan)
-    except PlanError as error:
-        return Trial("plan", _serious(error.findings))
-    found = _serious(check_plan(plan))
+    stated = _checked(product.plan)
+    found = stated.findings
     if not found.ok or not DOUBTS.isdisjoint(found.codes):
-        return Trial("plan", found)
+        return stated
     stage: Stage = "plan" if found else "none"
     try:
         assembly = _assembled(product, tools)
@@ -162,6 +206,14 @@ def examined(product: Product, tools: Tools) -> Trial:
         return Trial("evidence" if stage == "none" else stage, evidence, assembly)
     sampled = _serious(assembly.check(motion=True).findings)
     return Trial("sampled" if sampled else "none", sampled, assembly)
+
+
+def _checked(plan: Json) -> Trial:
+    """Return what the check of a plan finds."""
+    try:
+        return Trial("plan", _serious(advised(AssemblyPlan.from_json(plan))))
+    except PlanError as error:
+        return Trial("plan", _serious(error.findings))
 
 
 def _assembled(product: Product, tools: Tools) -> Assembly:

@@ -20,7 +20,7 @@ from articad.plan.schema import PLAN_FILE, AssemblyPlan
 from articad.runs.run import digest
 from articad_bench.task import TASKS
 
-__all__ = ["PRODUCTS", "Fault", "Kind", "Product", "Side", "Site", "chosen"]
+__all__ = ["PRODUCTS", "Fault", "Kind", "Product", "Side", "Site", "chosen", "obedient"]
 
 Json = dict[str, Any]
 Side = Literal["plan", "script"]
@@ -154,7 +154,7 @@ def _made(kind: Kind, product: Product, site: Site) -> Fault:
     if site.plan is not None:
         plan = copy.deepcopy(product.plan)
         site.plan(plan)
-        bad = replace(bad, plan=plan, scripts=_obedient(product, plan))
+        bad = replace(bad, plan=plan, scripts=obedient(product, plan))
     if site.script is not None:
         part, written = site.script
         bad = replace(bad, scripts={**product.scripts, part: written()})
@@ -177,7 +177,7 @@ def build(part):
 """
 
 
-def _obedient(product: Product, plan: Json) -> Mapping[str, str]:
+def obedient(product: Product, plan: Json) -> Mapping[str, str]:
     """Return the scripts of authors who follow a faulty plan: connectors of another place or direction are moved as the plan moves them.
 
     Their places still follow the dimensions.
