@@ -116,6 +116,11 @@ def _candidates(draft: Draft, whole: Json, findings: Sequence[Finding]) -> Itera
     yield from _mates(apart, draft, joints)
     placing = [joints[name] for name in draft.auto_joints if name in joints and {joints[name].parent, joints[name].child} & about.keys()]
     yield from _connectors(draft, [*apart, *placing], shifts)
+    sources = {spec.name for name in about if (spec := draft.parts[name].spec) is not None}
+    alike = [
+        joint for joint in joints.values() if any((spec := draft.parts[part].spec) and spec.name in sources for part, _ in _ends(joint))
+    ]
+    yield from _both_ends(draft, [*apart, *placing, *alike], shifts)
 
 
 # ---------------------------------------------------------------- structure
@@ -189,7 +194,7 @@ def _copies(whole: Json, draft: Draft, about: Iterable[str]) -> Iterator[tuple[s
 
 
 def _minus(value: Any) -> Any:
-    return f"-({value})" if isinstance(value, str) else -value
+    return f"-({value})" if isinstance(value, str) else 0.0 - value
 
 
 # ---------------------------------------------------------------- poses and mates
@@ -229,10 +234,8 @@ def _poses(draft: Draft, about: Iterable[str], shifts: Sequence[FloatArray]) -> 
         form = draft.parts[name].form
         if not isinstance(form, PartSpec) or not isinstance(form.rest_pose, Pose) or name == draft.plan.ground:
             continue
-        at = np.array(draft.evaluation.triple(form.rest_pose.at, f"parts.{name}.rest_pose", "at"))
-        for shift in shifts:
-            for sign in (-1.0, 1.0):
-                yield f"pose of {name}", {f"parts.{name}.rest_pose.at": _numbers(at + sign * shift)}
+        for shift, sign in itertools.product(shifts, (-1.0, 1.0)):
+            yield f"pose of {name}", {f"parts.{name}.rest_pose.at": _plus(form.rest_pose.at, sign * shift)}
 
 
 def _mates(apart: Sequence[Joint], draft: Draft, joints: Mapping[str, Joint]) -> Iterator[tuple[str, Changes]]:
@@ -254,6 +257,17 @@ def _connectors(draft: Draft, joints: Sequence[Joint], shifts: Sequence[FloatArr
         yield from _altered(draft, part, name, shifts)
 
 
+def _both_ends(draft: Draft, joints: Iterable[Joint], shifts: Sequence[FloatArray]) -> Iterator[tuple[str, Changes]]:
+    """Yield both connectors of a joint altered in the same way: they agree with each other, but not with what else is there."""
+    for joint in dict.fromkeys(joints):
+        specs = [draft.parts[part].spec for part, _ in _ends(joint)]
+        if any(spec is None for spec in specs):
+            continue
+        owners = [(spec.name, name) for spec, (_, name) in zip(specs, _ends(joint), strict=True) if spec is not None]
+        for (_, one), (_, other) in zip(*(_altered(draft, part, name, shifts) for part, name in owners), strict=False):
+            yield f"ends of {joint.name}", {**one, **other}
+
+
 def _ends(joint: Joint) -> tuple[tuple[str, str], tuple[str, str]]:
     return (joint.child, joint.child_connector), (joint.parent, joint.parent_connector)
 
@@ -265,7 +279,10 @@ def _meeting(draft: Draft, joint: Joint, part: str, name: str) -> Iterator[tuple
     right = _stated(draft, part, name, wanted)
     spec = next(spec for spec in draft.parts[part].connector_specs if spec.name == name)
     address = f"parts.{part}.connectors.{name}"
-    change: dict[str, Any] = {f"{address}.o": _numbers(right.translation)}
+    now = draft.parts[part].T
+    assert now is not None
+    off = right.translation - _stated(draft, part, name, now @ draft.parts[part].connectors[name].frame).translation
+    change: dict[str, Any] = {f"{address}.o": _plus(spec.o, off)}
     yield f"connector {part}.{name}", change
     change = change | {f"{address}.z": _numbers(right.z_axis, 6)} | ({f"{address}.x": _numbers(right.x_axis, 6)} if spec.x else {})
     yield f"connector {part}.{name}", change
@@ -282,8 +299,8 @@ def _altered(draft: Draft, part: str, name: str, shifts: Sequence[FloatArray]) -
     place = pose @ now.frame
     for shift, sign in itertools.product(shifts, (1.0, -1.0)):
         if np.linalg.norm(shift) > _LEAST_MM:
-            there = _stated(draft, part, name, SE3.from_translation(sign * shift) @ place)
-            yield kind, {f"{address}.o": _numbers(there.translation)}
+            there, here = (_stated(draft, part, name, one) for one in (SE3.from_translation(sign * shift) @ place, place))
+            yield kind, {f"{address}.o": _plus(spec.o, there.translation - here.translation)}
     z, x = list(spec.z), list(spec.x) if spec.x else None
     yield kind, {f"{address}.z": [_minus(value) for value in z]}
     for turns in (1, 2):
@@ -302,6 +319,17 @@ def _stated(draft: Draft, part: str, name: str, frame: SE3) -> SE3:
     spec = next(spec for spec in held.connector_specs if spec.name == name)
     assert held.T is not None
     return frame if spec.frame == "assembly" else held.T.inverse() @ frame
+
+
+def _plus(stated: Sequence[Any], shift: FloatArray) -> list[Any]:
+    """Return stated coordinates plus a shift; expressions stay, so that they follow their parameters."""
+    sums: list[Any] = []
+    for value, more in zip(stated, _numbers(shift), strict=True):
+        if isinstance(value, str):
+            sums.append(f"({value}) + {more}" if more else value)
+        else:
+            sums += _numbers(np.array([value + more]))
+    return sums
 
 
 def _numbers(values: FloatArray, decimals: int = _DECIMALS) -> list[float]:

@@ -287,6 +287,7 @@ def _faults(options: argparse.Namespace, terminal: Terminal) -> Report:
 
     tools = Tools(kernel_named("build123d", sandbox=sandbox_level(options)), build_cache(options))
     run = FaultRun.of(options.names, options.some)
+    run = FaultRun(run.faults, () if options.cases else run.products)
 
     def again(row: FaultRow) -> bool:
         is_chosen = not {row.case, row.kind}.isdisjoint(options.cases)

@@ -82,13 +82,15 @@ class FaultRun:
                 row = rows[fault.digest] = tried(fault, tools, repair=repair)
                 self._save(out, rows, alarms, stored.get("examined_by", ""))
             tell(fault.name, "same" if row.equivalent else "valid" if row.valid else "escaped" if row.escaped else row.stage)
-        if stored.get("examined_by") != programs() or not {product.name for product in self.products} <= set(alarms):
+        examined_by = stored.get("examined_by", "")
+        if self.products and (examined_by != programs() or not {product.name for product in self.products} <= set(alarms)):
             alarms = {product.name: [str(one) for one in examined(product, tools).findings] for product in self.products}
-        return self._save(out, rows, alarms, programs())
+            examined_by = programs()
+        return self._save(out, rows, alarms, examined_by)
 
     def _save(self, out: Path, rows: Mapping[str, Row], alarms: Mapping[str, Sequence[str]], examined_by: str) -> dict[str, Any]:
         tried_ones = [rows[fault.digest] for fault in self.faults if fault.digest in rows]
-        told = report(tried_ones, alarms, planned=len(self.faults), examined_by=examined_by)
+        told = report(tried_ones, alarms, planned=len(self.faults), examined_by=examined_by, judged_by=programs())
         for name, text in ((_RESULTS, json.dumps(told, indent=1) + "\n"), (_PAGE, page(told, KINDS))):
             fresh = out / f"{name}.new"
             fresh.write_text(text)

@@ -44,7 +44,9 @@ def rows_of(stored: Mapping[str, Any]) -> list[Row]:
     return [Row(**{**row, "findings": tuple(map(tuple, row["findings"]))}) for row in stored["rows"]]
 
 
-def report(rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned: int, examined_by: str = "") -> dict[str, Any]:
+def report(
+    rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned: int, examined_by: str = "", judged_by: str = ""
+) -> dict[str, Any]:
     """Return the report of a run.
 
     Args:
@@ -52,6 +54,7 @@ def report(rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned:
         alarms: Findings above a note about each good product that was examined.
         planned: Number of cases of the run.
         examined_by: Digest of the programs that examined the good products.
+        judged_by: Digest of the newest programs that judged a case.
     """
     rows = list(rows)
     return {
@@ -65,6 +68,7 @@ def report(rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned:
         "products": sorted({row.product for row in rows}),
         "alarms": {product: list(findings) for product, findings in alarms.items()},
         "examined_by": examined_by,
+        "judged_by": judged_by,
         "rows": [row.to_json() for row in rows],
     }
 
@@ -94,9 +98,10 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
     """
     rows = rows_of(told)
     heads = ("", *_COLUMNS)
+    newest = [row for row in rows if row.programs and row.programs == told.get("judged_by")]
     lines = [
         _ABOUT,
-        f"{len(rows)} of {told['planned']} cases were tried.",
+        f"{len(rows)} of {told['planned']} cases were tried, {len(newest)} of them by the newest programs and the others by earlier ones.",
         f"{len(told['products'])} products: {', '.join(told['products'])}.",
     ]
     lines += [alarms_line(told) + "".join(f"\n- {name}: {alarm}" for name, found in told["alarms"].items() for alarm in found), ""]

@@ -7,9 +7,15 @@ import re
 from pathlib import Path
 from typing import Any
 
+import pytest
+
+from articad.agents.evidence import examine
 from articad.agents.llm import Reply, Request, Scripted
 from articad.agents.pipeline import generate
+from articad.assembly import Assembly
+from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
+from articad_bench.obeying import followed
 from tests.agents import stories
 from tests.agents.stories import fenced, watched
 
@@ -147,3 +153,69 @@ def test_an_axis_ordered_too_low_and_too_near_is_the_designers(tmp_path: Path) -
     assert (run.checks() or {})["ok"]
     assert [step for step in llm.steps if step.startswith("design")] == ["design/1", "design/2"]
     assert len(llm.steps) - llm.steps.index("design/2") <= 6
+
+
+# A wheel on the pin of a post; the fit of the two is declared.
+POST = """
+from build123d import Align, Box, Cylinder, Pos
+
+def build(part):
+    d = part.dimensions
+    low = (Align.CENTER, Align.CENTER, Align.MIN)
+    plate = Pos(0, 0, -d["plate"]) * Box(30, 30, d["plate"] - d["clearance"], align=low)
+    return plate + Pos(0, 0, -d["plate"]) * Cylinder(PIN, 20 + d["plate"], align=low), dict(part.connectors)
+"""
+WHEEL = """
+from build123d import Align, Cylinder
+
+def build(part):
+    d = part.dimensions
+    low = (Align.CENTER, Align.CENTER, Align.MIN)
+    return Cylinder(d["radius"], 6, align=low) - Cylinder(d["bore"], 6, align=low), dict(part.connectors)
+"""
+
+
+def wheel_on_a_pin(pin: str = 'd["pin"] - d["clearance"]', **dimensions: float) -> tuple[dict[str, Any], Assembly]:
+    """A wheel whose bore has a radius of 4, on a pin with a radius of 4 less a clearance of 0.2."""
+    own = {"plate": 5, "pin": 4, "clearance": 0.2, "radius": 12, "bore": 4} | dimensions
+    bearing = {"z": [0, 0, 1], "x": [1, 0, 0], "o": [0, 0, 0], "label": "axis"}
+    parts = [
+        {
+            "name": name,
+            "description": name,
+            "dimensions": {key: own[key] for key in keys},
+            "connectors": [bearing | {"name": "axis"}],
+        }
+        for name, keys in {"post": ("plate", "pin", "clearance"), "wheel": ("radius", "bore")}.items()
+    ]
+    parts[1]["rest_pose"] = {"at": [0, 0, 0]}
+    turn = {"name": "turn", "type": "revolute", "parent": "post.axis", "child": "wheel.axis", "angle_deg": "endless"}
+    document = plan("wheel", parts, turn | {"fit": {"gap_mm": [0.1, 0.3], "contact": "forbidden"}})
+    scripts = {"post": POST.replace("PIN", pin), "wheel": WHEEL}
+    made = Assembly.from_plan(AssemblyPlan.from_json(document), scripts, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1)
+    return document, made
+
+
+def test_the_hint_of_a_fit_that_is_as_ordered_states_the_dimension_that_mends_it() -> None:
+    document, made = wheel_on_a_pin(bore=3.85)
+    found = [finding for finding in examine(made).findings.errors if finding.code.startswith("E_FIT")]
+
+    assert [(finding.route, finding.where) for finding in found] == [("design", "joints.turn.fit")]
+    offered = [change for change in followed(found[0], document) if change["parts"] != document["parts"]]
+    bores = {change["parts"][1]["dimensions"]["bore"] for change in offered}
+    pins = {change["parts"][0]["dimensions"]["pin"] for change in offered}
+    assert bores == {4.0, 3.85}
+    assert pins == {4.0, pytest.approx(3.85)}
+    assert "joints.turn.fit.gap_mm to [0.04, 0.3] if the gap is meant as it is" in found[0].hint
+
+
+def test_a_clearance_that_one_script_left_out_is_its_authors() -> None:
+    _, made = wheel_on_a_pin('d["pin"]')
+    found = [finding for finding in examine(made).findings.errors if finding.code.startswith("E_FIT")]
+
+    assert [(finding.route, finding.where) for finding in found] == [("code", "parts.post")]
+    assert "post is ordered with 'clearance'" in found[0].hint
+
+
+def test_a_wheel_as_it_was_ordered_has_no_fault() -> None:
+    assert examine(wheel_on_a_pin()[1]).findings.ok

@@ -11,11 +11,15 @@ from pathlib import Path
 
 import pytest
 
+from articad.findings import Finding
 from articad.kernels.kernel import BuildCache
+from articad.plan.remedies import advised
+from articad.plan.schema import AssemblyPlan
 from articad_bench.fault_reasons import REASONS
+from articad_bench.fault_repair import healed
 from articad_bench.fault_run import KINDS, FaultRun
 from articad_bench.fault_table import page, report
-from articad_bench.fault_trial import Row, Tools, tried
+from articad_bench.fault_trial import Row, Tools, programs, tried
 from articad_bench.faulty import OBEDIENT, PRODUCTS, Fault, Kind, Product, chosen
 
 KIND = {kind.name: kind for kind in KINDS}
@@ -79,6 +83,8 @@ def test_some_cases_are_spread_over_the_kinds() -> None:
         ("wardrobe", "axis_reversed", "E_MATE_FLIP"),
         ("wardrobe", "joint_missing", "E_DISCONNECTED"),
         ("gears_18_36", "connector_unknown", "E_CONNECTOR_UNKNOWN"),
+        ("door_bifold", "origin_off_5", "E_MATE_OFFSET"),  # the mistake is two joints away
+        ("toggle_clamp", "limit_sign", "E_LOOP_LIMIT"),  # of the joint that ends the driver's range
     ],
 )
 def test_a_faulty_plan_is_refused_before_any_part_is_built(product: str, kind: str, code: str) -> None:
@@ -148,6 +154,40 @@ def test_results_are_kept_and_not_made_again(tmp_path: Path, monkeypatch: pytest
     assert run.work(tmp_path, tools()) == json.loads((tmp_path / "faults.json").read_text()) | {"rows": first["rows"]}
 
 
+def test_cases_that_are_chosen_are_tried_again_and_the_others_stay(tmp_path: Path) -> None:
+    run = FaultRun([planted("hinge_butt_pin", kind) for kind in ("limit_order", "fit_impossible")], ())
+    first = run.work(tmp_path, tools())
+    assert [found["healed"] for found in first["rows"]] == [None, None]
+    second = run.work(tmp_path, tools(), again=lambda row: row.kind == "limit_order", repair=True)
+    assert [found["healed"] for found in second["rows"]] == [True, None]
+    assert (second["all"]["repaired"], second["all"]["healed"]) == (1, 1)
+    assert {found["programs"] for found in second["rows"]} == {programs()}
+
+
+def test_hints_that_lead_to_the_good_plan_heal_and_nothing_is_built(monkeypatch: pytest.MonkeyPatch) -> None:
+    fault = planted("rod_tie_two_balls", "pose_off")
+    monkeypatch.setattr("articad_bench.fault_trial._assembled", None)  # calling it would fail
+    row = tried(fault, tools(), repair=True)
+    assert row.healed
+    assert "parts.stud.rest_pose.at" in advised(AssemblyPlan.from_json(fault.bad.plan))[0].hint
+
+
+def test_a_repair_ends_where_hints_lead_nowhere_or_no_product_is_green() -> None:
+    fault = planted("rod_tie_two_balls", "pose_off")
+    silent = [replace(one, hint="") for one in advised(AssemblyPlan.from_json(fault.bad.plan)) if one.severity != "info"]
+    assert not healed(fault, silent, lambda _plan: silent, lambda _product: ())
+    wrong = [replace(silent[0], hint='One change ends this finding: {"parts.rod.rest_pose.at": [9, 9, 9]}.')]
+    tries: list[Product] = []
+
+    def examine(product: Product) -> list[Finding]:
+        tries.append(product)
+        return silent
+
+    assert not healed(fault, wrong, lambda _plan: (), examine)
+    assert [product.plan["parts"][0]["rest_pose"] for product in tries] == [{"at": [9, 9, 9]}]
+    assert healed(fault, wrong, lambda _plan: (), lambda _product: ())
+
+
 def row(kind: Kind, **given: object) -> Row:
     found = (("E_FIT", "joints.a", "design", "A fit."),)
     plain = Row(f"p:{kind.name}", "p", kind.name, kind.side, "said", "plan", found, "0", named=True, addressed=True)
@@ -160,10 +200,10 @@ def test_the_page_counts_what_it_lists() -> None:
         row(KIND["limit_sign"], stage="none", escaped=True, named=False, addressed=False, findings=()),
         row(KIND["limit_order"], stage="none", equivalent=True, named=False, addressed=False, findings=()),
         row(KIND["fit_narrow"], stage="none", valid=True, named=False, addressed=False, findings=()),
-        row(KIND["two_solids"], addressed=False),
-        row(KIND["shape_off"], named=False, addressed=False),
+        row(KIND["two_solids"], addressed=False, healed=False, programs="old"),
+        row(KIND["shape_off"], named=False, addressed=False, healed=True, programs="new"),
     ]
-    told = report(rows, {"p": ["E_OVERLAP"], "q": []}, planned=7)
+    told = report(rows, {"p": ["E_OVERLAP"], "q": []}, planned=7, judged_by="new")
     assert (
         told["all"]["cases"],
         told["all"]["same"],
@@ -173,8 +213,8 @@ def test_the_page_counts_what_it_lists() -> None:
         told["all"]["addressed"],
     ) == (*(4, 1, 1, 1, 2, 1),)
     text = page(told, KINDS)
-    assert "6 of 7 cases were tried." in text
-    assert "Escaped: 1 of 4 (25.0 %). Named: 2 of 4 (50.0 %). Addressed: 1 of 4 (25.0 %)." in text
+    assert "6 of 7 cases were tried, 1 of them by the newest programs" in text
+    assert "Escaped: 1 of 4 (25.0 %). Named: 2 of 4 (50.0 %). Addressed: 1 of 4 (25.0 %). Hints heal: 1 of 2 (50.0 %)." in text
     assert "False alarms: 1, on 2 good products.\n- p: E_OVERLAP" in text
     assert "False alarms: not measured" in page(report(rows, {}, planned=7), KINDS)
     assert "| `p:limit_sign` | said |" in text.split("## Escapes")[1].split("##")[0]

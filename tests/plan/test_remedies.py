@@ -42,7 +42,7 @@ def test_the_sample_is_sound() -> None:
     assert serious(two_on_a_rail()) == []
 
 
-SLIPS = {
+SLIPS: dict[str, Json] = {
     "a pose": {"parts.b.rest_pose.at": [0, 0, 5]},
     "two poses exchanged": {"parts.b.rest_pose.at": [40, 0, 0], "parts.e.rest_pose.at": [0, 0, 0]},
     "a connector of the ground": {"parts.a.connectors.c.o": [1, 0, 0]},
