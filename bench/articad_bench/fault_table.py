@@ -108,7 +108,9 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
     lines += _table(heads, [_line(name, told[name]) for name in ("plan", "script", "all")])
     shares = {"Escaped": "escaped", "Named": "named", "Addressed": "addressed"}
     said = [f"{title}: {_share(told['all'], key)}." for title, key in shares.items()]
-    lines += [" ".join([*said, f"Hints heal: {_share(told['all'], 'healed', 'repaired')}."])]
+    repaired, cases = told["all"]["repaired"], told["all"]["cases"]
+    some = "" if repaired == cases else "at least "
+    lines += [" ".join([*said, f"Hints heal: {some}{_share(told['all'], 'healed')}; {repaired} cases were repaired."])]
     for side, title in (("plan", "Mistakes in plans"), ("script", "Mistakes in scripts")):
         of_side = [(kind, [row for row in rows if row.kind == kind.name]) for kind in kinds if kind.side == side]
         lines += ["", f"## {title}", ""]
@@ -141,8 +143,8 @@ def _line(name: str, counts: Mapping[str, int]) -> tuple[str, ...]:
     return (name, *(str(counts[key] or "") for key in _COLUMNS))
 
 
-def _share(counts: Mapping[str, int], key: str, of: str = "cases") -> str:
-    return f"{counts[key]} of {counts[of]} ({100 * counts[key] / max(counts[of], 1):.1f} %)"
+def _share(counts: Mapping[str, int], key: str) -> str:
+    return f"{counts[key]} of {counts['cases']} ({100 * counts[key] / max(counts['cases'], 1):.1f} %)"
 
 
 def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
