@@ -103,11 +103,10 @@ def _numbers(plan: Json) -> Any:
         name: [np.asarray(part.T_rest.matrix).tolist(), None if part.derivation is not None else brief(resolved, name)]
         for name, part in resolved.parts.items()
     }
-    joints = [
-        {"ends": (joint.parent, joint.parent_connector, joint.child, joint.child_connector)}
-        | {"name": joint.name, "type": str(joint.type), "mate": str(joint.mate), "rest": joint.rest, "limits": vars(joint.limits)}
-        for joint in resolved.joints
-    ]
+    joints: dict[str, Any] = {}  # by ends: a joint that was added may be called otherwise
+    for joint in resolved.joints:
+        ends = f"{joint.parent}.{joint.parent_connector} {joint.child}.{joint.child_connector}"
+        joints[ends] = [str(joint.type), str(joint.mate), joint.rest, vars(joint.limits)]
     couplings = [[each.a, each.b, float(each.ratio)] for each in resolved.couplings]
     materials = {name: vars(material) for name, material in resolved.materials.items()}
     return [parts, joints, couplings, materials, {name: vars(fit) for name, fit in resolved.fits.items()}, resolved.plan.freedoms]
