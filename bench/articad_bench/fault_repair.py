@@ -30,7 +30,7 @@ Examine = Callable[[Product], Sequence[Finding]]
 """Returns the errors and warnings about a product."""
 PRODUCTS: Final = 3  # that are built
 _STEPS: Final = 10  # changes one after another
-_PLANS: Final = 40  # that are checked
+_PLANS: Final = 15  # that are checked
 _ALIKE: Final = 1e-3  # relative difference, and mm, that is rounding of the numbers in hints
 
 
