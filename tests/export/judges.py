@@ -362,6 +362,8 @@ the one that kinematics computes for it. `articad sim` requires 99 %.
   child from the poses at zero (newton-physics/newton, issue 2293 and pull request 4248). *Anchors of loops corrected* means: the judge
   restored the anchors that Newton had read; otherwise, the loop is a different mechanism. From MJCF, Newton's reader drops the position of
   the second site of a `connect`, so that file is not judged.
+- steering_rack in Newton from USD: NewtonMimicAPI couples joints of one kind only, so the wheel does not drive the rack there, and nothing else moves the
+  linkage. The export states this loss.
 - An empty cell, or a model that is not listed, was not judged. *(earlier)*: by an earlier version of the judge's program, or on an earlier export.
 - Drake and SAPIEN are not in the table: `pytest -m engines_all tests/export/test_elsewhere.py` loads URDFs of all kinds of joints in both, and MJCF and SDF in
   Drake, in an environment of their own, and compares the poses of all links.
