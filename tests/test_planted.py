@@ -186,6 +186,7 @@ def test_no_tool_runs_what_a_stranger_planted_in_the_root_or_among_temporary_fil
         "sim": {"design": "product"},
         "render": {"design": "product"},
         "export": {"design": "product", "formats": ["urdf", "mjcf"]},
+        "manual": {"design": "product"},
         "convert": {"source": "product/run/export/urdf/product.urdf", "target": "other.xml"},
         "adopt": {"source": "product/run/export/urdf/product.urdf", "design": "adopted"},
         "edit_parameters": {"design": "product", "values": {"width": 50.0}},
@@ -203,5 +204,7 @@ def test_no_tool_runs_what_a_stranger_planted_in_the_root_or_among_temporary_fil
                 answer = await client.call_tool(name, arguments)
                 assert marks(stranger) == marks(temporary) == "", name
                 assert not answer.is_error, (name, answer.content)
+            assert (await client.read_resource("ui://articad/designs/product")).contents
+            assert marks(stranger) == marks(temporary) == ""
 
     finish(session())

@@ -64,6 +64,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "sim": {"design": "NAMED"},
     "render": {"design": "NAMED"},
     "export": {"design": "NAMED", "formats": ["urdf"]},
+    "manual": {"design": "NAMED"},
     "convert": {"source": "NAMED", "target": "other.xml"},
     "adopt": {"source": "NAMED", "design": "adopted"},
     "edit_parameters": {"design": "NAMED", "values": {"width": 900.0}},
@@ -93,6 +94,7 @@ def test_a_linked_design_or_file_is_refused_and_tells_nothing(tool: str, root: P
     (root / "plan" / "plan.json").symlink_to(secret)
     (root / "within" / "run").symlink_to(away)
     (root / "within" / "parts").symlink_to(away / "parts")
+    (root / "within" / "papers").symlink_to(away)
     (root / "bad").symlink_to(away)
     (root / "bad.urdf").symlink_to(secret)
     (root / "other.xml").symlink_to(secret)
@@ -105,6 +107,16 @@ def test_a_linked_design_or_file_is_refused_and_tells_nothing(tool: str, root: P
         assert named == "within" or '"ok":true' not in answer.replace(" ", ""), named  # its plan is sound
     after = {path: path.read_bytes() for path in root.parent.rglob("*") if path.is_file() and not path.is_relative_to(root)}
     assert before == after
+
+
+def test_the_page_of_a_linked_design_is_refused(root: Path) -> None:
+    """A resource of the server, by a name that the host gives."""
+    (root / "plan").mkdir()
+    (root / "plan" / "plan.json").symlink_to(root.parent / "secret")
+    (root / "bad").symlink_to(root.parent)
+    for named in ("plan", "bad", "../secret", "box/../../secret", "bad/plan.json", "--sandbox=weak", "", "box\0"):
+        with pytest.raises(ReadError):
+            finish(Workbench(root).page(named))
 
 
 def test_a_linked_script_is_not_read(root: Path) -> None:
