@@ -29,11 +29,22 @@ from articad_bench.check import Check as Check  # noqa: PLC0414  (others take th
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
+from articad_bench.solids import wall_thickness
 from articad_bench.subject import Subject
 
 AXIS_RAD: Final = math.radians(5)  # by which an axis may lean from the one asked for
+_ABOUT_LINE: Final = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
+_ASIDE: Final = {str(kind): {"x", "y"} for kind in JointType} | {
+    str(JointType.BALL): {"x", "y", "z"},
+    str(JointType.UNIVERSAL): {"x", "y", "z"},
+    str(JointType.PLANAR): {"z"},
+    str(JointType.SLIDER): {"x", "y"},
+}  # directions in which a body must not be free to leave its joint
 STROKE: Final = 9  # values of a driver at which what follows it is measured
 CLOSED_MM: Final = 1e-6
+LEAST_WALL_MM: Final = 0.2  # a wire or a foil is no part
+WALL_SAMPLES: Final = 60
+SAME_LINE_MM: Final = 0.1
 
 
 class JointWanted(PlanObject):
@@ -143,9 +154,12 @@ class PartSize(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         sides = sorted(side for side in self.mm if side is not None)
-        found = [name for name in subject.shaped if self._fits(sides, subject.extents(name))]
+        found = [name for name in subject.shaped if self._fits(sides, subject.extents(name)) or self._in_some_frame(sides, subject, name)]
         sizes = ", ".join(f"{name} {_by(subject.extents(name))}" for name in subject.shaped[:12])
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({sizes})"
+
+    def _in_some_frame(self, sides: list[float], subject: Subject, name: str) -> bool:
+        return any(self._fits(sides, extents) for extents in subject.boxes(name))
 
     def _fits(self, sides: list[float], extents: FloatArray) -> bool:
         """Return whether some of the extents are these sides; both ascend, so that each is compared with its own."""
@@ -171,13 +185,13 @@ class Mass(Check):
 
 
 class Solids(Check):
-    """Every part is one closed solid."""
+    """Every part is one closed solid, at least 0.2 mm thick under most of its surface."""
 
     kind: Literal["solids"] = "solids"
 
     @property
     def wanted(self) -> str:
-        return "every part is one closed solid"
+        return f"every part is one closed solid, {LEAST_WALL_MM:g} mm thick or more"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         wrong = []
@@ -185,6 +199,8 @@ class Solids(Check):
             mesh = subject.assembly.parts[name].mesh
             if mesh is None or not mesh.welded().is_closed or len(mesh.welded().components()) != 1:
                 wrong.append(name)
+            elif (thick := float(np.median(wall_thickness(mesh, WALL_SAMPLES)))) < LEAST_WALL_MM:
+                wrong.append(f"{name}, {thick:.2g} mm thick")
         return bool(subject.shaped) and not wrong, f"not: {', '.join(wrong)}" if wrong else f"all {len(subject.shaped)} are"
 
 
@@ -254,7 +270,7 @@ class Certified(Check):
 
 
 class Loops(Check):
-    """The number of loops; they are closed at every value of the drivers."""
+    """The number of loops; they are closed at every value of the drivers. Joints about one line, and parallel slides, form no loop."""
 
     kind: Literal["loops"] = "loops"
     number: Bounds
@@ -265,7 +281,7 @@ class Loops(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         mechanism = subject.assembly.mechanism
-        count = len(mechanism.loop_joints)
+        count = len(mechanism.loop_joints) - _trivial_loops(subject)
         if not self.number[0] <= count <= self.number[1]:
             return False, f"{count} loops"
         gap = max((_closing_error(subject, driver.name) for driver in subject.assembly.drivers), default=0.0)
@@ -334,6 +350,30 @@ class Travel(Check):
         return self.number[0] <= count <= self.number[1], f"{count} ({', '.join(f'{travel:.4g}' for travel in moved) or 'no such joint'})"
 
 
+class Moves(Check):
+    """A number of joints move bodies of this share of all matter and of this size, as a share of the whole's.
+
+    What a joint moves is everything fixed to its child, or to its parent where the child is fixed to the ground. Size is the diagonal of the box at rest.
+    """
+
+    kind: Literal["moves"] = "moves"
+    joint: JointWanted
+    volume: Bounds
+    size: Bounds
+    number: Bounds = (1, 999)
+
+    @property
+    def wanted(self) -> str:
+        volume, size = (f"{100 * low:.3g} to {100 * high:.3g} %" for low, high in (self.volume, self.size))
+        return f"{in_words(self.number)} joints ({self.joint}) that move {volume} of the matter, {size} of the size"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        found = [moved_share(subject, joint) for joint in self.joint.found(subject)]
+        count = sum(self.volume[0] <= volume <= self.volume[1] and self.size[0] <= size <= self.size[1] for volume, size in found)
+        told = ", ".join(f"{100 * volume:.2g} % {100 * size:.3g} %" for volume, size in found[:8])
+        return self.number[0] <= count <= self.number[1], f"{count} ({told or 'no such joint'})"
+
+
 class Gap(Check):
     """Parts that a joint connects keep this distance at rest; `within` counts only surface this close to the joint's axis [mm]."""
 
@@ -356,22 +396,48 @@ class Gap(Check):
 
 
 class Lead(Check):
-    """The number of screws with this lead, right-handed or left-handed [mm/turn]."""
+    """The number of screws with this lead [mm/turn]; `hand` requires that their thread is right-handed or left-handed."""
 
     kind: Literal["lead"] = "lead"
     joint: JointWanted = JointWanted(type=JointType.SCREW)
     mm: float
     number: Bounds = (1, 999)
     tolerance: float = 0.01
+    hand: Literal["right", "left"] | None = None
 
     @property
     def wanted(self) -> str:
-        return f"{in_words(self.number)} screws of {self.mm:g} mm a turn"
+        return f"{in_words(self.number)} {f'{self.hand}-handed ' if self.hand else ''}screws of {self.mm:g} mm a turn"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         leads = [joint.lead for joint in self.joint.found(subject)]
-        count = sum(abs(abs(lead) - self.mm) <= self.tolerance * self.mm for lead in leads)
+        meant = [lead for lead in leads if self.hand is None or (lead > 0) == (self.hand == "right")]
+        count = sum(abs(abs(lead) - self.mm) <= self.tolerance * self.mm for lead in meant)
         return self.number[0] <= count <= self.number[1], f"{count} ({', '.join(f'{lead:.4g}' for lead in leads[:8]) or 'no screw'})"
+
+
+class Made(Check):
+    """Surfaces of both bodies make every joint: no body can leave its pin, bore or guide sideways. A number of joints may be made otherwise."""
+
+    kind: Literal["made"] = "made"
+    except_for: int = 0
+
+    @property
+    def wanted(self) -> str:
+        return "surfaces of both bodies make every joint" + (f", up to {self.except_for}" if self.except_for else "")
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        wrong = self.wrong(subject)
+        return bool(_moving(subject)) and len(wrong) <= self.except_for, f"not: {', '.join(wrong)}" if wrong else "all are"
+
+    @staticmethod
+    def wrong(subject: Subject) -> list[str]:
+        """Return the joints that no surfaces make, or whose bodies can leave them sideways."""
+        return [
+            row.joint
+            for row in subject.assembly.check_joints([joint.name for joint in _moving(subject)]).rows
+            if row.verdict in {"not made", "not assessed"} or any(loss.way[1:] in _ASIDE[row.type] for loss in row.losses)
+        ]
 
 
 class Captive(Check):
@@ -456,13 +522,29 @@ AnyCheck = Annotated[
     | Holds
     | Stands
     | Symmetric
-    | Lead,
+    | Lead
+    | Made
+    | Moves,
     Field(discriminator="kind"),
 ]
 
 
 def _shapes(assembly: Assembly) -> Counter[str]:
     return Counter(part.mesh.digest for part in assembly.parts.values() if part.mesh is not None)
+
+
+def moved_share(subject: Subject, joint: Joint) -> tuple[float, float]:
+    """Return the share of the whole's volume, and of the diagonal of its box, that what a joint moves has at rest."""
+    ground = subject.rigid[subject.assembly.ground]
+    side = subject.rigid[joint.child] if subject.rigid[joint.child] != ground else subject.rigid[joint.parent]
+    bodies = [name for name in subject.shaped if subject.rigid[name] == side]
+    if not bodies:
+        return 0.0, 0.0
+    volumes = {name: abs(subject.assembly.parts[name].mesh.volume) for name in subject.shaped}  # type: ignore[union-attr]
+    ends = subject.corners(subject.rest, bodies)
+    return sum(volumes[name] for name in bodies) / sum(volumes.values()), float(
+        np.linalg.norm(ends[1] - ends[0]) / np.linalg.norm(subject.size)
+    )
 
 
 def _moving(subject: Subject) -> list[Joint]:
@@ -495,6 +577,51 @@ def _stroke_poses(subject: Subject, driver: str) -> Iterator[Any]:
         q = np.array(assembly.mechanism.rest)
         q[column] = point
         yield dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
+
+
+def _trivial_loops(subject: Subject) -> int:
+    """Return the number of independent loops that joints about one line, or slides along one direction, form among themselves.
+
+    A door with two hinges is such a loop. In a graph of E joints between V bodies in C pieces, E - V + C loops are independent.
+    """
+    kinds: dict[int, list[tuple[FloatArray, FloatArray | None, Joint]]] = {0: [], 1: []}
+    for joint in _moving(subject):
+        frame = subject.rest[joint.parent] @ joint.T_parent_connector
+        if joint.type in _ABOUT_LINE:
+            kinds[0].append((frame.z_axis, frame.translation, joint))
+        elif joint.type is JointType.SLIDER:
+            kinds[1].append((frame.z_axis, None, joint))
+    return sum(_cycles(subject, group) for rows in kinds.values() for group in _alike(rows))
+
+
+def _alike(rows: list[tuple[FloatArray, FloatArray | None, Joint]]) -> list[list[Joint]]:
+    """Return joints in groups of the same line, or of the same direction where they have no point."""
+    groups: list[tuple[FloatArray, FloatArray | None, list[Joint]]] = []
+    for axis, point, joint in rows:
+        for other, foot, members in groups:
+            beside = 0.0 if point is None or foot is None else float(np.linalg.norm(np.cross(point - foot, other)))
+            if _parallel(axis, other) and beside <= SAME_LINE_MM:
+                members.append(joint)
+                break
+        else:
+            groups.append((axis, point, [joint]))
+    return [members for _, _, members in groups]
+
+
+def _cycles(subject: Subject, joints: list[Joint]) -> int:
+    leader = {subject.rigid[part]: subject.rigid[part] for joint in joints for part in (joint.parent, joint.child)}
+
+    def top(name: str) -> str:
+        while leader[name] != name:
+            name = leader[name]
+        return name
+
+    cycles = 0
+    for joint in joints:
+        a, b = top(subject.rigid[joint.parent]), top(subject.rigid[joint.child])
+        cycles += a == b
+        leader[a] = b
+    return cycles
 
 
 def _closing_error(subject: Subject, driver: str) -> float:

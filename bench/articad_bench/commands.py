@@ -25,8 +25,10 @@ if TYPE_CHECKING:
 @command(
     "bench",
     "Run the benchmark with a model; score the files of any tool, or have models judge them; list the tasks, or draw their pictures; "
-    "plant faults, and count those that no check finds.",
-    argument("action", choices=["run", "score", "judge", "table", "list", "draw", "shapes", "objects", "faults"], help="what to do"),
+    "plant faults, and count those that no check finds; try cheats, none of which may pass.",
+    argument(
+        "action", choices=["run", "score", "judge", "table", "list", "draw", "shapes", "objects", "faults", "cheats"], help="what to do"
+    ),
     argument(
         "what",
         nargs="?",
@@ -52,7 +54,7 @@ if TYPE_CHECKING:
         "--out",
         metavar="DIR",
         default="bench",
-        help="where rows, runs and the table of faults are kept; existing rows are not made again (bench)",
+        help="where rows, runs and the tables of faults and cheats are kept; existing rows are not made again (bench)",
     ),
     argument(
         "--variant",
@@ -306,6 +308,28 @@ def _faults(options: argparse.Namespace, terminal: Terminal) -> Report:
     return told
 
 
+def _cheats(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.kernels.choice import kernel_named
+    from articad_bench.cheat_run import run_cheats
+    from articad_bench.task import TASKS, tasks_in
+
+    tasks = tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind)
+    with terminal.progress("Cheats") as tell:
+        told = run_cheats(
+            tasks,
+            Path(options.out),
+            every=tasks_in(options.tasks or TASKS),
+            cache=build_cache(options),
+            kernel=kernel_named(options.kernel, sandbox=sandbox_level(options)),
+            again=options.force,
+            tell=tell,
+        )
+    for task, cheat in told["passed"]:
+        terminal.say(f"{task}: {cheat} passes")
+    terminal.say(f"{told['cheats']} cheats of {told['tried']} of {told['tasks']} tasks tried; {len(told['passed'])} pass.")
+    return told
+
+
 _ACTIONS: Final[Mapping[str, Callable[[argparse.Namespace, Terminal], Report]]] = {
     "run": _run,
     "score": _score,
@@ -316,4 +340,5 @@ _ACTIONS: Final[Mapping[str, Callable[[argparse.Namespace, Terminal], Report]]] 
     "shapes": _on_data,
     "objects": _on_data,
     "faults": _faults,
+    "cheats": _cheats,
 }

@@ -116,14 +116,14 @@ def _strokes(subject: Subject) -> Iterator[SE3]:
 
 
 def _paths(subject: Subject) -> Iterator[FloatArray]:
-    """Yield where the centres of joints come by whose child no slide guides `(PATH, 3)` [mm]."""
+    """Yield where the centres of joints come by whose bodies no slide guides, nor one that is fixed to them `(PATH, 3)` [mm]."""
     assembly = subject.assembly
     slides = {JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR}
-    guided = {part for joint in assembly.joints if joint.type in slides for part in (joint.parent, joint.child)}
+    guided = {subject.rigid[part] for joint in assembly.joints if joint.type in slides for part in (joint.parent, joint.child)}
     rows = {name: row for row, name in enumerate(assembly.mechanism.parts)}
     for poses in _strokes(subject):
         for joint in assembly.joints:
-            if joint.parent not in guided and joint.child not in guided:
+            if subject.rigid[joint.parent] not in guided and subject.rigid[joint.child] not in guided:
                 yield (poses[:, rows[joint.child]] @ joint.T_child_connector).translation
 
 

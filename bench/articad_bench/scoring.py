@@ -84,7 +84,7 @@ def subject_of(found: Path) -> Subject:
     """
     if found.is_dir():
         return Subject(assembly_of(Run.view(found)))
-    return Subject(_solid(formats.read(found)), file=found if found.suffix.lower() in _SIMULATED else None)
+    return Subject(_solid(formats.read(found, fuse=True)), file=found if found.suffix.lower() in _SIMULATED else None)
 
 
 def _solid(assembly: Assembly) -> Assembly:

@@ -28,6 +28,7 @@ ARC_RAD: Final = math.radians(300)  # at least so much of a circle is a hole or 
 PIECE_RAD: Final = math.radians(20)  # less of a circle than this has no certain radius
 SAME_MM: Final = 0.02  # pieces of one cylinder have the same axis and radius
 SAMPLES: Final = 200  # points of a surface at which a wall is measured
+BOX_DIRECTIONS: Final = 8  # in which most of a surface faces
 CELLS: Final = 100  # along the longest side, where volumes are counted
 FLAT_CELLS: Final = 64  # above one another, where it matters how high water stands
 FOOT_MM: Final = 0.2  # corners so near the ground stand on it
@@ -216,6 +217,48 @@ def wall_thickness(mesh: TriMesh, samples: int = SAMPLES) -> FloatArray:
     inwards = -normals[chosen] / area[chosen, None]
     start = 1e-4
     return ray_lengths(mesh, a + s * (b - a) + t * (c - a) + start * inwards, inwards) + start
+
+
+def boxes_by_faces(mesh: TriMesh, directions: int = BOX_DIRECTIONS) -> list[FloatArray]:
+    """Return the sides of boxes around a shape in the frames that its faces suggest, each `(3,)` ascending [mm].
+
+    For each of the directions in which most area faces: the height along it, and the least rectangle around the shape seen that way,
+    as well as the rectangles along the other directions that are perpendicular to it.
+    """
+    normals = mesh.normals_of_twice_area
+    area = np.linalg.norm(normals, axis=1)
+    unit = normals[area > 0] / area[area > 0, None]
+    sign = np.where(unit[np.arange(len(unit)), np.abs(unit).argmax(axis=1)] < 0, -1.0, 1.0)
+    facing, inverse = np.unique(np.round(unit * sign[:, None], 3), axis=0, return_inverse=True)
+    total = np.bincount(inverse.ravel(), weights=area[area > 0])
+    main = [way / np.linalg.norm(way) for way in facing[np.argsort(-total)[:directions]]]
+    try:
+        points = mesh.vertices[ConvexHull(mesh.vertices).vertices]
+    except QhullError:
+        return []
+    return [box for way in main for box in _boxes_along(points, way, main)]
+
+
+def _boxes_along(points: FloatArray, way: FloatArray, others: Sequence[FloatArray]) -> list[FloatArray]:
+    u = np.cross(way, [1.0, 0, 0] if abs(way[0]) < 0.9 else [0, 1.0, 0])
+    u /= np.linalg.norm(u)
+    flat, height = np.column_stack([points @ u, points @ np.cross(way, u)]), float(np.ptp(points @ way))
+    try:
+        outline = flat[ConvexHull(flat).vertices]
+    except QhullError:
+        return []
+    edges = np.roll(outline, -1, axis=0) - outline
+    angles = np.arctan2(edges[:, 1], edges[:, 0])
+    rectangles = [_rectangle(outline, angle) for angle in np.unique(np.round(np.mod(angles, math.pi / 2), 6))]
+    chosen = [min(rectangles, key=lambda sides: float(np.prod(sides)))]
+    across = [other for other in others if abs(float(other @ way)) < 1e-3]
+    chosen += [_rectangle(outline, math.atan2(float(other @ np.cross(way, u)), float(other @ u))) for other in across]
+    return [np.sort([height, *sides]) for sides in chosen]
+
+
+def _rectangle(outline: FloatArray, angle: float) -> FloatArray:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.asarray(np.ptp(outline @ np.array([[cos, -sin], [sin, cos]]), axis=0))
 
 
 def occupied(meshes: Sequence[TriMesh], cells: int = CELLS) -> tuple[Grid, float]:

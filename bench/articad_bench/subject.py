@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from articad.interference.report import Checks
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.motion import FeasibleRange
+from articad_bench.solids import boxes_by_faces
 
 _SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR})
 
@@ -28,7 +29,7 @@ class Subject:
     """An assembly under check.
 
     Attributes:
-        assembly: Made by articad, or read from a file of any tool.
+        assembly: Made by articad, or read from a file of any tool; its own waivers of overlaps do not count.
         before: The same product before an edit, if there was one.
         file: URDF or MJCF that it was read from: what a simulator is given, as it is.
     """
@@ -36,6 +37,10 @@ class Subject:
     assembly: Assembly
     before: Assembly | None = None
     file: Path | None = None
+
+    def __post_init__(self) -> None:
+        if self.assembly.waivers:  # whoever is judged does not say what is allowed
+            object.__setattr__(self, "assembly", replace(self.assembly, waivers=()))
 
     @cached_property
     def rest(self) -> Poses:
@@ -63,9 +68,10 @@ class Subject:
         """Sides of the box around the whole at rest, along the axes `(3,)` [mm]."""
         return np.asarray(np.ptp(self.corners(self.rest), axis=0))
 
-    def corners(self, poses: Mapping[str, SE3]) -> FloatArray:
-        """Return the ends of the whole, `(2, 3)` [mm]."""
-        points = [poses[name].apply(self.assembly.parts[name].mesh.vertices) for name in self.shaped]  # type: ignore[union-attr]
+    def corners(self, poses: Mapping[str, SE3], parts: Sequence[str] | None = None) -> FloatArray:
+        """Return the ends of the whole, or of some of its parts, `(2, 3)` [mm]."""
+        chosen = self.shaped if parts is None else parts
+        points = [poses[name].apply(self.assembly.parts[name].mesh.vertices) for name in chosen]  # type: ignore[union-attr]
         return np.array([np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)])
 
     def axis(self, joint: Joint) -> FloatArray:
@@ -76,6 +82,28 @@ class Subject:
         """Return a part's sides in its own frame, ascending `(3,)` [mm]."""
         mesh = self.assembly.parts[part].mesh
         return np.sort(np.ptp(mesh.vertices, axis=0)) if mesh is not None else np.zeros(3)
+
+    def boxes(self, part: str) -> FloatArray:
+        """Return a part's sides in its own frame, at rest, and in the frames that its faces suggest; each row ascends `(n, 3)` [mm].
+
+        A tool may choose any frame for a part, so the sides in its own frame alone say nothing.
+        """
+        if part not in self._boxes:
+            mesh = self.assembly.parts[part].mesh
+            assert mesh is not None
+            turned = mesh.vertices @ self.rest[part].rotation.T
+            rows = [self.extents(part), np.sort(np.ptp(turned, axis=0)), *boxes_by_faces(mesh)]
+            self._boxes[part] = np.array(rows)
+        return self._boxes[part]
+
+    @cached_property
+    def _boxes(self) -> dict[str, FloatArray]:
+        return {}
+
+    @cached_property
+    def rigid(self) -> Mapping[str, str]:
+        """For each part the name of one that it is fixed to; the same for all that are fixed together."""
+        return {name: self.scene.relations.rigid.leader(name) for name in self.assembly.mechanism.parts}
 
     def density(self, part: str) -> float:
         """Return a part's mass by its volume [kg/mm³]; that of water where no mass is known."""

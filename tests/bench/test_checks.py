@@ -39,6 +39,8 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("scissor_lift", {"kind": "rise", "axis": "z", "mm": [50, 1000]}),
     ("slider_crank", {"kind": "gap", "joint": {"type": "revolute"}, "mm": [0.05, 0.5]}),
     ("wardrobe", {"kind": "captive", "number": [1, 18]}),
+    ("slider_crank", {"kind": "made"}),
+    ("slider_crank", {"kind": "moves", "joint": {"type": "slider"}, "volume": [0.01, 0.2], "size": [0.1, 0.4]}),
     ("toggle_clamp", {"kind": "simulates"}),
     ("four_bar", {"kind": "unchanged", "number": [8, 8]}),
     ("toggle_clamp", {"kind": "holes", "diameter": 6.6, "number": [4, 4], "axis": [0, 0, 1], "through": True, "length": [6.9, 7.1]}),

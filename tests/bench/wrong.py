@@ -260,6 +260,18 @@ def _thin(check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, parts))
 
 
+def _crumbs(_check: Check, subject: Subject) -> Subject:
+    """All that moves is a tenth as large."""
+    parts = []
+    for name, part in subject.assembly.parts.items():
+        mesh = part.mesh
+        if mesh is not None and subject.rigid[name] != subject.rigid[subject.assembly.ground]:
+            middle = SE3.from_translation(mesh.bounds.mean(axis=0))
+            mesh = mesh.transformed(middle.inverse()).scaled(0.1).transformed(middle)
+        parts.append(part if mesh is part.mesh else shaped_as(part, mesh))
+    return Subject(changed(subject.assembly, parts))
+
+
 def _nothing_around(_check: Check, subject: Subject) -> Subject:
     """Parts that could hold others have no shape."""
     moving = {joint.child for joint in subject.assembly.joints if joint.type is not JointType.FIXED}
@@ -317,6 +329,8 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "turns": _unclosed,
     "gap": _thin,
     "captive": _nothing_around,
+    "made": _nothing_around,
+    "moves": _crumbs,
     "unchanged": _all_new,
     "holes": _larger,
     "studs": _larger,

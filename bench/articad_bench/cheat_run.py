@@ -1,0 +1,234 @@
+"""A run of the cheat suite: every cheat of the chosen tasks, the check that refuses it, and the files of the results."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from articad.assembly import Assembly
+from articad.errors import ArticadError
+from articad.kernels.kernel import BuildCache, PartKernel
+from articad_bench.cheats import CHEATS, cheats_of
+from articad_bench.reference import reference, reference_folder
+from articad_bench.shape_checks import placed
+from articad_bench.solids import occupied
+from articad_bench.subject import Subject
+from articad_bench.task import Task
+
+__all__ = ["SCHEMA", "CheatRow", "page", "refused_by", "run_cheats"]
+
+SCHEMA: Final = "articad.bench-cheats/1"
+SAME: Final = 0.01  # share of the matter by which a mirror image may differ from what it mirrors
+_RESULTS, _PAGE = "cheats.json", "cheats.md"
+_SOURCES: Final = ("check.py", "checks.py", "shape_checks.py", "path_checks.py", "solids.py", "subject.py", "cheats.py")
+_COSTLY: Final = ("made", "captive", "clear_in_motion", "certified", "simulates")  # the least costly first
+
+_ABOUT: Final = """\
+# Cheats
+
+<!-- Written by `articad bench cheats --out docs/reference` from its results, cheats.json. -->
+
+Products that look right to the checks of a task and are not what was asked for. None may pass. [The how-to](../how-to/benchmark.md#try-to-cheat) says how to run
+the suite and how to submit a cheat of your own.
+
+| cheat | what it is |
+|---|---|
+| discs | a disc or a sphere on a plate for each joint that the checks ask for, made of the checks alone |
+| wires | the reference with each body a skeleton of 0.06 mm wire |
+| shells | the reference with each body hollow, its walls 1 % of its size |
+| mirrored | its mirror image; not counted where that is the same product |
+| misplaced | a moving body beside its joint |
+| omitted | without one body and its joint |
+| swapped | two bodies have each other's shapes |
+| scaled | ten times as large |
+| merged | a moving body united with what carries it, with a crumb in its place |
+| waived | a body that runs through its neighbours, with waivers of its own for all of it |
+| coaxial | loops left open, and as many pins doubled |
+| other | the reference of another task |
+"""
+
+
+@dataclass(frozen=True)
+class CheatRow:
+    """What came of a cheat.
+
+    Attributes:
+        task: Name of the task.
+        cheat: Its kind.
+        refused_by: Kind of the first check that does not hold; "format" if no assembly can be made of it; None if it passes.
+        measured: What that check measured.
+        same: Whether it is the same product as the reference, so that it is no cheat.
+        digest: Of the task, its reference, the checks and the cheats.
+    """
+
+    task: str
+    cheat: str
+    refused_by: str | None
+    measured: str
+    same: bool
+    digest: str
+
+    @property
+    def passed(self) -> bool:
+        """Whether it is a cheat and every check holds."""
+        return self.refused_by is None and not self.same
+
+
+def run_cheats(
+    tasks: Sequence[tuple[Path, Task]],
+    out: Path,
+    *,
+    every: Sequence[tuple[Path, Task]],
+    cache: BuildCache | None = None,
+    kernel: PartKernel | None = None,
+    again: bool = False,
+    seconds: float | None = None,
+    tell: Callable[[str, str], object] = lambda _case, _outcome: None,
+) -> dict[str, Any]:
+    """Try all cheats of tasks, write `cheats.json` and the page `cheats.md`, and return the report.
+
+    Results are written after every task; those of tasks whose task, reference, checks and cheats are unchanged are kept. Rows of tasks that
+    are not chosen stay as they are, if they are still valid.
+
+    Args:
+        tasks: Folders and tasks to try.
+        out: Folder of both files.
+        every: All tasks of the benchmark: the page says how many were tried.
+        cache: Keeps built parts.
+        kernel: Builds the references.
+        again: Whether to try cheats again that have results.
+        seconds: No task is begun after this time; all by default.
+        tell: Called with each cheat and its outcome.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    digests = {task.name: _digest(folder, task) for folder, task in every}
+    rows = [row for row in _known(out / _RESULTS) if row.digest == digests.get(row.task)]
+    chosen, end = {task.name for _, task in tasks}, None if seconds is None else time.monotonic() + seconds
+    if again:
+        rows = [row for row in rows if row.task not in chosen]
+    done = {row.task for row in rows}
+    for folder, task in tasks:
+        if task.name in done or task.reference is None or (end is not None and time.monotonic() > end):
+            continue
+        other = _other(every, task)
+        rows += list(_tried(folder, task, other, digests[task.name], cache, kernel, tell))
+        _save(out, rows, len(every))
+    return _save(out, rows, len(every))
+
+
+def _tried(
+    folder: Path,
+    task: Task,
+    other: tuple[Path, Task] | None,
+    digest: str,
+    cache: BuildCache | None,
+    kernel: PartKernel | None,
+    tell: Callable[[str, str], object],
+) -> list[CheatRow]:
+    built = reference(folder, task, cache=cache, kernel=kernel)
+    rows = []
+    for kind in (*CHEATS, "other"):
+        try:
+            elsewhere = reference(*other, cache=cache, kernel=kernel) if kind == "other" and other is not None else None
+            cheat = next(iter(cheats_of(task, built, (kind,), other=elsewhere)), None)
+        except ArticadError as error:
+            rows.append(CheatRow(task.name, kind, "format", str(error).splitlines()[0][:200], same=False, digest=digest))
+            continue
+        if cheat is None:
+            continue
+        same = kind == "mirrored" and _same(built, cheat.assembly)
+        failed = ("", "") if same else refused_by(task, Subject(cheat.assembly))
+        row = CheatRow(
+            task.name, kind, None if failed is None or same else failed[0], "" if failed is None else failed[1][:200], same, digest
+        )
+        rows.append(row)
+        tell(f"{task.name}: {kind}", "same" if same else "passed" if row.passed else f"refused by {row.refused_by}")
+    return rows
+
+
+def refused_by(task: Task, subject: Subject) -> tuple[str, str] | None:
+    """Return kind and measurement of a check that does not hold, those that cost little first; None if all hold."""
+    order = {kind: place for place, kind in enumerate(_COSTLY, start=1)}
+    for check in sorted(task.checks, key=lambda check: order.get(check.kind, 0)):
+        judgement = check.judge(subject)
+        if not judgement.ok:
+            return check.kind, judgement.measured
+    return None
+
+
+def _same(reference: Assembly, mirrored: Assembly) -> bool:
+    """Return whether a mirror image is the same product: the same matter in the same place, about the middle, and threads of the same hands."""
+    leads = sorted(joint.lead for joint in reference.joints if joint.lead)
+    if leads != sorted(-lead for lead in leads):
+        return False
+    first, second = (occupied(placed(Subject(assembly)))[0] for assembly in (reference, mirrored))
+    turned = [second, second[::-1, ::-1]]  # standing as it does, or turned half round
+    return any(first.shape == each.shape and float((first ^ each).sum()) <= SAME * float(2 * first.sum()) for each in turned)
+
+
+def _other(every: Sequence[tuple[Path, Task]], task: Task) -> tuple[Path, Task] | None:
+    """Return a task of the same kind with a reference that looks most like this one to its checks."""
+    kinds = {check.kind for check in task.checks}
+    others = [(folder, each) for folder, each in every if each.name != task.name and each.kind == task.kind and each.reference is not None]
+    return max(others, key=lambda pair: (len(kinds & {check.kind for check in pair[1].checks}), pair[1].name), default=None)
+
+
+def _digest(folder: Path, task: Task) -> str:
+    found = hashlib.sha256(task.model_dump_json().encode())
+    if task.reference is not None:
+        place = reference_folder(folder, task)
+        for file in sorted(path for path in place.rglob("*") if path.suffix in {".json", ".py"}):
+            found.update(file.relative_to(place).as_posix().encode() + file.read_bytes())
+    for name in _SOURCES:
+        found.update(Path(__file__).with_name(name).read_bytes())
+    return found.hexdigest()[:16]
+
+
+def _known(file: Path) -> list[CheatRow]:
+    return [CheatRow(**row) for row in json.loads(file.read_text())["rows"]] if file.is_file() else []
+
+
+def _save(out: Path, rows: Sequence[CheatRow], tasks: int) -> dict[str, Any]:
+    rows = sorted(rows, key=lambda row: (row.task, row.cheat))
+    passed = [row for row in rows if row.passed]
+    report = {
+        "schema": SCHEMA,
+        "ok": not passed,
+        "findings": [],
+        "tasks": tasks,
+        "tried": len({row.task for row in rows}),
+        "cheats": sum(not row.same for row in rows),
+        "passed": [[row.task, row.cheat] for row in passed],
+        "rows": [asdict(row) for row in rows],
+    }
+    for name, text in ((_RESULTS, json.dumps(report, indent=1, ensure_ascii=False) + "\n"), (_PAGE, page(report, rows))):
+        fresh = out / f"{name}.new"
+        fresh.write_text(text, encoding="utf-8")
+        fresh.replace(out / name)  # a run that is killed leaves whole files
+    return report
+
+
+def page(report: Mapping[str, Any], rows: Sequence[CheatRow]) -> str:
+    """Return the page of a report."""
+    lines = [
+        _ABOUT,
+        f"{report['cheats']} cheats of {report['tried']} of {report['tasks']} tasks were tried; {len(report['passed'])} pass.\n",
+    ]
+    lines.append("| cheat | tried | same | pass | refused by |")
+    lines.append("|---|---|---|---|---|")
+    for kind in (*CHEATS, "other"):
+        mine = [row for row in rows if row.cheat == kind]
+        by = Counter(row.refused_by for row in mine if row.refused_by)
+        told = ", ".join(f"{check} {count}" for check, count in by.most_common())
+        lines.append(f"| {kind} | {len(mine)} | {sum(r.same for r in mine)} | {sum(r.passed for r in mine)} | {told} |")
+    if report["passed"]:
+        lines += ["\n## What passes\n", *(f"- `{task}`: {cheat}" for task, cheat in report["passed"])]
+    tried = sorted({row.task for row in rows})
+    lines += ["\n## Tasks tried\n", ", ".join(f"`{name}`" for name in tried) + "."]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,242 @@
+"""Cheats are refused: by checks that look at bodies, in any frame, and not at what the candidate says of itself."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import manifold3d
+import numpy as np
+import pytest
+
+from articad.assembly import Assembly
+from articad.connectors import SE3
+from articad.geometry import Part, TriMesh, box, cylinder
+from articad.kinematics.joints import Joint
+from articad.plan.resolve import Waiver
+from articad_bench.bindings import bindings, bound
+from articad_bench.cheat_run import CheatRow, page, refused_by, run_cheats
+from articad_bench.cheats import CHEATS, cheats_of
+from articad_bench.subject import Subject
+from articad_bench.task import TASKS, Task, tasks_in
+from tests.bench.test_checks import form
+from tests.kinematics.linkages import at, joint
+
+TURN = SE3.from_axis_angle(np.array([0.3, 0.5, 0.8]), 1.1) @ SE3.trans(7, -3, 11)
+HINGED: dict[str, Any] = {
+    "name": "hinged",
+    "kind": "articulated",
+    "product": "flap",
+    "prompt": "A plate with a lever that turns by 90 degrees about an upright pin; the lever is 60 mm long.",
+    "checks": [
+        {"kind": "parts", "number": [2, 2]},
+        {"kind": "freedoms", "number": 1},
+        {"kind": "joints", "joint": {"type": "revolute", "axis": [0, 0, 1], "span": [89, 91]}, "number": [1, 1]},
+        {"kind": "part_size", "mm": [60, None, None]},
+        {"kind": "solids"},
+        {"kind": "clear_at_rest"},
+        {"kind": "joined"},
+        {"kind": "clear_in_motion", "steps": 6},
+    ],
+}
+
+
+def made(kind: str, *bodies: manifold3d.Manifold) -> TriMesh:
+    found = manifold3d.Manifold.batch_boolean(list(bodies), getattr(manifold3d.OpType, kind)).to_mesh64()
+    return TriMesh(np.asarray(found.vert_properties)[:, :3].astype(np.float64), np.asarray(found.tri_verts).astype(np.int32))
+
+
+def solid(mesh: TriMesh) -> manifold3d.Manifold:
+    return manifold3d.Manifold(manifold3d.Mesh64(mesh.vertices.copy(), mesh.triangles.astype(np.uint64)))
+
+
+def placed(mesh: TriMesh, x: float, y: float, z: float) -> TriMesh:
+    return mesh.transformed(SE3.trans(x, y, z))
+
+
+def hinge() -> Assembly:
+    """A plate with a headed pin of 10 mm, and on it a lever of 60 mm with a bore of 10.2 mm."""
+    pin = made("Add", solid(box(80, 40, 6)), solid(placed(cylinder(5, 12.3), 0, 0, 8.9)), solid(placed(cylinder(8, 3), 0, 0, 16.5)))
+    lever = made("Subtract", solid(placed(box(60, 20, 11.8), 18, 0, 9.0)), solid(placed(cylinder(5.1, 40), 0, 0, 9)))
+    parts = [Part.from_mesh("plate", pin, density=1000), Part.from_mesh("lever", lever, density=1000)]
+    joints = [joint("turn", "revolute", ("plate", at(0)), ("lever", at(0)), limits=[(0, math.pi / 2)])]
+    return Assembly.from_parts("hinge", parts=parts, joints=joints, ground="plate")
+
+
+def of(*bodies: tuple[str, TriMesh], joints: list[Joint]) -> Subject:
+    parts = [Part.from_mesh(name, mesh, density=1000) for name, mesh in bodies]
+    return Subject(Assembly.from_parts("made", parts=parts, joints=joints, ground=bodies[0][0]))
+
+
+def task(**changes: Any) -> Task:
+    return Task.model_validate(HINGED | changes)
+
+
+# ---------------------------------------------------------------------- checks that cannot be talked to
+
+
+def test_waivers_of_the_candidate_do_not_count() -> None:
+    assembly = hinge()
+    ghost = made("Add", solid(assembly.parts["lever"].mesh), solid(placed(box(4, 4, 30), 30, 0, 3)))  # type: ignore[arg-type]
+    parts = [assembly.parts["plate"], Part.from_mesh("lever", ghost, density=1000)]
+    wrong = Assembly.from_parts(
+        "waived", parts=parts, joints=assembly.joints, ground="plate", waivers=[Waiver(("plate", "lever"), 1e6, "It is meant.")]
+    )
+
+    for kind in ("clear_at_rest", "clear_in_motion"):
+        assert form({"kind": kind}).judge(Subject(assembly)).ok
+        assert not form({"kind": kind}).judge(Subject(wrong)).ok
+
+
+def test_a_slide_behind_a_fixed_joint_guides_as_well() -> None:
+    """A slider carries a bracket, and the bracket a pin: the pin runs straight because it is guided."""
+    slide = joint("slide", "slider", ("base", SE3.rot_y(math.pi / 2)), ("carriage", SE3.rot_y(math.pi / 2)), limits=[(0.0, 100.0)])
+    held = joint("held", "fixed", ("carriage", at(0, 0, 10)), ("bracket", at(0)))
+    pin = joint("pin", "revolute", ("bracket", at(0, 0, 10)), ("arm", at(0)), limits=[(0.0, 1.0)])
+    bodies = [(name, placed(box(5, 5, 5), 0, 0, 20 * i)) for i, name in enumerate(("base", "carriage", "bracket", "arm"))]
+
+    judged = form({"kind": "straight", "mm": [50, 200], "off": 0.1}).judge(of(*bodies, joints=[slide, held, pin]))
+
+    assert not judged.ok, judged
+
+
+def test_doubled_pins_and_parallel_slides_are_no_loops() -> None:
+    """Two hinges on one door are one joint twice; four pins of a parallelogram are a loop."""
+    door = [
+        joint("low", "revolute", ("frame", at(0)), ("door", at(0)), limits=[(0.0, 1.5)]),
+        joint("high", "revolute", ("frame", at(0, 0, 50)), ("door", at(0, 0, 50)), limits=[(0.0, 1.5)]),
+    ]
+    names = ("frame", "first", "second", "third")
+    corners = [(0.0, 0.0), (50.0, 0.0), (50.0, 40.0), (0.0, 40.0)]
+    bars = [
+        joint(f"pin_{i}", "revolute", (names[i], at(*corners[i])), (names[(i + 1) % 4], at(*corners[i])), limits=[(-1.0, 1.0)])
+        for i in range(4)
+    ]
+    one_loop = form({"kind": "loops", "number": [1, 1]})
+
+    assert one_loop.judge(of(("frame", box(5, 5, 5)), ("door", box(5, 5, 5)), joints=door)).measured == "0 loops"
+    assert one_loop.judge(of(*((name, box(5, 5, 5)) for name in names), joints=bars)).ok
+
+
+@pytest.mark.parametrize("sides", [(60, 20, 12), (50, 50, 8)])
+def test_the_frame_of_a_part_does_not_change_its_size(sides: tuple[float, float, float]) -> None:
+    mesh = made("Subtract", solid(box(*sides)), solid(cylinder(3, 40)))
+    check = form({"kind": "part_size", "mm": list(sides)})
+
+    assert check.judge(of(("plate", mesh), joints=[])).ok
+    assert check.judge(of(("plate", mesh.transformed(TURN)), joints=[])).ok
+    assert not check.judge(of(("plate", mesh.transformed(TURN).scaled(1.05)), joints=[])).ok
+
+
+def test_a_wire_is_no_solid_part() -> None:
+    assert form({"kind": "solids"}).judge(of(("plate", box(60, 20, 0.3)), joints=[])).ok
+    judged = form({"kind": "solids"}).judge(of(("wire", box(60, 0.06, 0.06)), joints=[]))
+    assert not judged.ok
+    assert "0.06 mm thick" in judged.measured
+
+
+def test_a_thread_has_a_hand() -> None:
+    right = joint("screw", "screw", ("nut", at(0)), ("bolt", at(0)), limits=[(0.0, 6.0)], lead=2.0)
+    bodies = (("nut", box(20, 20, 10)), ("bolt", placed(cylinder(4, 30), 0, 0, 40)))
+    check = form({"kind": "lead", "mm": 2, "hand": "right", "number": [1, 1]})
+
+    assert check.judge(of(*bodies, joints=[right])).ok
+    assert not check.judge(of(*bodies, joints=[replace(right, lead=-2.0)])).ok
+    assert form({"kind": "lead", "mm": 2, "number": [1, 1]}).judge(of(*bodies, joints=[replace(right, lead=-2.0)])).ok
+
+
+def test_a_disc_on_a_plate_is_no_joint_and_a_pin_in_its_bore_is_one() -> None:
+    turn = joint("turn", "revolute", ("plate", at(0)), ("disc", at(0)), limits=[(0, 1.5)])
+    disc = of(("plate", box(80, 40, 6)), ("disc", placed(cylinder(10, 4), 0, 0, 5.05)), joints=[turn])
+
+    assert form({"kind": "made"}).judge(Subject(hinge())).ok
+    judged = form({"kind": "made"}).judge(disc)
+    assert not judged.ok
+    assert judged.measured == "not: turn"
+
+
+def test_bindings_hold_of_the_reference_and_of_another_construction_and_not_of_a_crumb() -> None:
+    checks = bindings(task(), Subject(hinge()))
+    slim = hinge()
+    lever = made("Subtract", solid(slim.parts["lever"].mesh), solid(placed(box(25, 14, 40), 28, 0, 9)))  # type: ignore[arg-type]
+    other = of(("plate", slim.parts["plate"].mesh), ("lever", lever), joints=list(slim.joints))  # type: ignore[arg-type]
+    crumb = of(("plate", slim.parts["plate"].mesh), ("lever", placed(box(2, 2, 2), 0, 7, 8)), joints=list(slim.joints))  # type: ignore[arg-type]
+
+    assert [check.kind for check in checks] == ["moves", "made"]
+    assert all(check.judge(Subject(hinge())).ok and check.judge(other).ok for check in checks)
+    assert not checks[0].judge(crumb).ok
+    assert [check.kind for check in bound(bound(task(), Subject(hinge())), Subject(hinge())).checks][-2:] == ["moves", "made"]
+
+
+# ---------------------------------------------------------------------- the suite
+
+
+def test_no_cheat_of_a_bound_task_passes_and_the_reference_does() -> None:
+    reference = hinge()
+    chosen = bound(task(), Subject(reference))
+
+    assert refused_by(chosen, Subject(reference)) is None
+    found = {cheat.kind: refused_by(chosen, Subject(cheat.assembly)) for cheat in cheats_of(chosen, reference, other=reference)}
+    other = found.pop("other")
+
+    assert other is None  # it was given the reference itself
+    assert set(found) == {"discs", "wires", "shells", "misplaced", "omitted", "swapped", "scaled", "merged", "waived"} - {"swapped"}
+    assert [kind for kind, refused in found.items() if refused is None] == []
+
+
+def test_discs_pass_the_checks_of_joints_alone() -> None:
+    """What the suite is for: types, axes, ranges, numbers and sizes are met by discs."""
+    (discs,) = cheats_of(task(), hinge(), ("discs",))
+
+    assert refused_by(task(checks=HINGED["checks"][:7]), Subject(discs.assembly)) is None
+    refused = refused_by(bound(task(), Subject(hinge())), Subject(discs.assembly))
+    assert refused is not None
+    assert refused[0] in {"moves", "made"}
+
+
+def test_a_mirror_image_moves_as_a_mirror_image_and_only_where_a_hand_is_stated() -> None:
+    assembly = hinge()
+    assert list(cheats_of(task(), assembly, ("mirrored",))) == []
+
+    (mirrored,) = cheats_of(task(prompt="The lever lies to the left of the pin."), assembly, ("mirrored",))
+
+    K = np.diag([1.0, -1.0, 1.0, 1.0])
+    for angle in (0.0, 0.4, 1.2):
+        pose = mirrored.assembly.at(turn=-angle)["lever"].matrix
+        assert pose == pytest.approx(K @ assembly.at(turn=angle)["lever"].matrix @ K, abs=1e-12)
+
+
+@pytest.mark.slow
+def test_a_run_of_the_suite_is_kept_and_made_anew_only_where_something_changed(tmp_path: Path) -> None:
+    chosen, every, told = tasks_in(TASKS, names=["bracket_corner"]), tasks_in(TASKS), []
+
+    first = run_cheats(chosen, tmp_path, every=every, tell=lambda case, _: told.append(case))
+    tried = len(told)
+    again = run_cheats(chosen, tmp_path, every=every, tell=lambda case, _: told.append(case))
+
+    assert (first["ok"], first["tried"], first["tasks"]) == (True, 1, len(every))
+    assert tried >= 4
+    assert len(told) == tried
+    assert again == first
+    page = (tmp_path / "cheats.md").read_text()
+    assert "| scaled | 1 | 0 | 0 | size 1 |" in page
+    changed = chosen[0][1].model_copy(update={"checks": chosen[0][1].checks[:1]})
+    later = run_cheats([(chosen[0][0], changed)], tmp_path, every=[(chosen[0][0], changed)], tell=lambda case, _: told.append(case))
+    assert len(told) > tried
+    assert not later["ok"]  # one check alone is passed by cheats, and the report says so
+    assert ["bracket_corner", "scaled"] in later["passed"]
+    assert json.loads((tmp_path / "cheats.json").read_text())["passed"] == later["passed"]
+
+
+def test_every_kind_of_cheat_is_explained_and_the_page_is_that_of_its_results() -> None:
+    folder = Path(__file__).resolve().parents[2] / "docs" / "reference"
+    stored = json.loads((folder / "cheats.json").read_text(encoding="utf-8"))
+    text = (folder / "cheats.md").read_text(encoding="utf-8")
+
+    assert all(f"| {kind} |" in text for kind in (*CHEATS, "other"))
+    assert text == page(stored, [CheatRow(**row) for row in stored["rows"]])
+    assert stored["ok"] is (not stored["passed"])
+    assert stored["passed"] == [[row["task"], row["cheat"]] for row in stored["rows"] if row["refused_by"] is None and not row["same"]]
