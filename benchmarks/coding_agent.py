@@ -74,7 +74,7 @@ async def design(agent: Counting, name: str) -> None:
             await agent.call("build_part", design="mine", part=part["name"], script=script)
     built = await agent.call("build", design="mine")
     await agent.call("render", design="mine")
-    await agent.call("certify", design="mine", joints=[built["drivers"][0]["name"]], pairs=False)
+    await agent.call("certify", design="mine", joints=[built["drivers"][0]["name"]], pairs=False, budget_s=900)
     await agent.call("sim", design="mine")
     await agent.call("audit", design="mine")
     await agent.call("export", design="mine", formats=["mjcf", "step", "glb"])
