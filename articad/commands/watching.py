@@ -163,7 +163,10 @@ def fingerprint(folder: Path) -> str:
 
 
 def _rebuild(folder: Path, options: argparse.Namespace, terminal: Terminal, server: PageServer, *, version: str) -> None:
-    """Rebuild what has changed; errors are printed here and shown on the page, which otherwise stays as it was."""
+    """Rebuild what has changed, show it, then check it; errors are printed and shown on the page, which otherwise stays as it was.
+
+    Checks take several times as long as the rest: the model is shown before they end, under a version of its own.
+    """
     from articad.commands.steps import assembled
     from articad.errors import ArticadError
     from articad.interference.statements import about_rest
@@ -175,6 +178,9 @@ def _rebuild(folder: Path, options: argparse.Namespace, terminal: Terminal, serv
     try:
         plan = AssemblyPlan.load(folder)
         assembly = assembled(plan, folder / "parts", options, terminal)
+        shown = f"{version} before checks"
+        server.page = report_page(assembly, Documents(plan=plan.dumps()), watch=shown)
+        server.version, server.message, server.error = shown, "Checking …", ()
         checks = assembly.check()
         server.page = report_page(assembly, Documents(checks=checks.to_json(), plan=plan.dumps()), watch=version)
     except ArticadError as error:

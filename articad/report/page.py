@@ -50,7 +50,7 @@ def report_page(assembly: Assembly, documents: Documents | None = None, *, watch
             '<meta name="viewport" content="width=device-width, initial-scale=1">\n<meta name="referrer" content="no-referrer">\n',
             '<meta name="generator" content="articad">\n',
             f"<title>{escape(assembly.name)} – articad</title>\n<style>{style}</style>\n</head>\n<body>\n",
-            _header(assembly, documents),
+            _header(assembly, documents, unchecked=watch is not None and documents.checks is None),
             '<div id="banner" role="alert" hidden></div>\n<main>\n',
             _stage(assembly),
             '<div id="card" hidden></div>\n',
@@ -95,12 +95,13 @@ def _json_text(text: str) -> str:
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def _header(assembly: Assembly, documents: Documents) -> str:
+def _header(assembly: Assembly, documents: Documents, *, unchecked: bool) -> str:
     counts = {"part": len(assembly.parts), "joint": len(assembly.joints), "freedom": assembly.mechanism.mobility}
     told = ", ".join(f"{count} {thing}{'' if count == 1 else 's'}" for thing, count in counts.items()) + f", {total_mass(assembly)}"
+    pending = '<span class="badge quiet">not checked yet</span>' if unchecked else ""
     return (
         f'<header><h1>{escape(assembly.name)}</h1><button type="button" id="theme" aria-label="light or dark">{icon("theme")}</button>'
-        f'<span class="quiet">{escape(told)}</span><span class="badges">{badges(documents, moves=bool(assembly.drivers))}</span></header>\n'
+        f'<span class="quiet">{escape(told)}</span><span class="badges">{pending}{badges(documents, moves=bool(assembly.drivers))}</span></header>\n'
     )
 
 

@@ -183,6 +183,35 @@ def test_a_saved_file_is_built_and_served_and_an_error_keeps_the_old_page(starte
     assert fingerprint(folder) != versions[1]
 
 
+def test_an_edit_is_shown_before_its_checks_have_ended(starter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "watched"
+    shutil.copytree(starter, folder)
+    meanwhile: list[tuple[str, str, str]] = []
+    check = Assembly.check
+
+    with PageServer() as server:
+
+        def checked(assembly: Assembly) -> Any:
+            meanwhile.append((server.version, server.page, server.message))
+            return check(assembly)
+
+        def end(_seconds: float) -> None:
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr(Assembly, "check", checked)
+        options = argparse.Namespace(plan=str(folder), kernel=None, sandbox=None, jobs=1, force=False, parameters=[])
+        watch(options, Terminal(quiet=True), server, wait=end)
+
+    [(version, page, message)] = meanwhile
+    assert message == "Checking …"
+    assert f'"watch":"{version}"' in page
+    assert "not checked yet" in page
+    assert "clear at rest" not in page
+    assert server.version == fingerprint(folder) != version
+    assert "clear at rest" in server.page
+    assert (server.message, server.error) == ("", ())
+
+
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_knows_every_command_and_its_flags(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["completion", shell]) == 0

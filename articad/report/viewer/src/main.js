@@ -737,6 +737,22 @@ const KEYS = {
 };
 const TURNS = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] };
 
+// On paper every section is open, and the model is drawn again: the browser keeps no picture of it.
+function buildPrint() {
+  const opened = [];
+  addEventListener("beforeprint", () => {
+    for (const section of document.querySelectorAll("details.section:not([open])")) {
+      section.open = true;
+      opened.push(section);
+    }
+    view?.resize();
+    view?.finish();
+  });
+  addEventListener("afterprint", () => {
+    for (const section of opened.splice(0)) section.open = false;
+  });
+}
+
 function buildKeys() {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !view) return;
@@ -807,15 +823,18 @@ function begin() {
     buildKeys();
   }
   buildTables();
+  buildPrint();
   update();
   if (view) {
     if (model.watch) {
       watch(model.watch, {
-        kept: () => ({ ...state(), axes: view.axes.visible, named, theme: document.documentElement.dataset.theme ?? null, selected: mechanism.parts[selected] ?? null }),
+        busy: () => view.busy && playing === null,
+        kept: () => ({ ...state(), playing: playing === $("play"), axes: view.axes.visible, named, theme: document.documentElement.dataset.theme ?? null, selected: mechanism.parts[selected] ?? null }),
         restore: (kept) => {
           restore(kept);
           if (kept.axes) $("tool-axes").click();
           if (kept.named) $("tool-names").click();
+          if (kept.playing) $("play").click();
           if (kept.theme) document.documentElement.dataset.theme = kept.theme;
           if (mechanism.parts.includes(kept.selected)) select(mechanism.parts.indexOf(kept.selected));
         },

@@ -3,7 +3,7 @@
 const ASK = 500; // ms
 const KEY = "articad";
 
-export function watch(version, { kept, restore }) {
+export function watch(version, { kept, restore, busy }) {
   const banner = document.getElementById("banner");
   const stored = sessionStorage.getItem(KEY);
   if (stored) {
@@ -29,7 +29,8 @@ export function watch(version, { kept, restore }) {
       if (state.error.length) tell("failed", state.error);
       else if (state.message) tell("busy", [state.message]);
       else tell("", []);
-      if (state.version !== version) {
+      // What is being dragged is not taken out of anybody's hand.
+      if (state.version !== version && !busy()) {
         sessionStorage.setItem(KEY, JSON.stringify(kept()));
         location.reload();
         return;
