@@ -88,7 +88,7 @@ def _cropped(window: Image.Image) -> Image.Image:
     half = min(max(np.ptp(rows), np.ptp(columns)) / 2 * 1.12, (bottom - top) / 2)
     across = np.clip(left + (columns[0] + columns[-1]) / 2, left + half, right - half)
     down = np.clip(top + (rows[0] + rows[-1]) / 2, top + half, bottom - half)
-    box = tuple(round(float(value)) for value in (across - half, down - half, across + half, down + half))
+    box = (float(across - half), float(down - half), float(across + half), float(down + half))
     return window.crop(box).resize((CELL, CELL), Image.Resampling.LANCZOS)
 
 
