@@ -345,7 +345,9 @@ class PairCase:
         parent, child = self.scene.bodies[joint.parent], self.scene.bodies[joint.child]
         frame = joint.T_parent_connector.matrix
         near = (inset, depth, inset + depth, 2.0 * (inset + depth))
-        extents = [((body.mesh.vertices - at[:3, 3]) @ at[:3, :2]) for body, at in ((parent, frame), (child, joint.T_child_connector.matrix))]
+        extents = [
+            ((body.mesh.vertices - at[:3, 3]) @ at[:3, :2]) for body, at in ((parent, frame), (child, joint.T_child_connector.matrix))
+        ]
         trials = set[tuple[float, int]]()
         for side, (axis, sign) in enumerate(itertools.product((0, 1), (-1.0, 1.0))):
             faces = (float((sign * extent[:, axis]).max()) for extent in extents)
