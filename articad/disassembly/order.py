@@ -35,6 +35,7 @@ _ROUNDED: Final = 6  # digits of numbers in the result
 
 _FURTHER: Final = 4  # turns of directions that are tried in other configurations than rest
 _STEPS: Final = (0.98, 0.94, 0.85, 0.7, 0.5, 0.25)  # of the travel in a first direction, after which a second is tried
+_HALVINGS: Final = 8  # of a first move
 _PARALLEL: Final = 1e-9  # of a cosine
 _FAR: Final = 0.5  # of its size: a way that is longer is compared with others
 _NEARER: Final = 0.5  # of that way: only a way as short replaces it
@@ -289,8 +290,18 @@ class _Taking:
                     moved = share * travel * first
                     for way in directions:
                         if abs(float(way @ first)) < 1 - _PARALLEL and np.isinf(self.ways.stop(atom, rest, way, offset=moved).travel):
+                            moved = self._shortened(atom, rest, moved, way)
                             return _Removal((atom,), way, self.ways, {}, moved, self._key((atom,), left, way, 0))
         return None
+
+    def _shortened(self, atom: Atom, rest: Sequence[str], moved: FloatArray, way: FloatArray) -> FloatArray:
+        """Return a first move, halved as often as the second one stays free after it."""
+        for _ in range(_HALVINGS):
+            half = moved / 2
+            if float(np.linalg.norm(half)) < _LEAST_MM or np.isfinite(self.ways.stop(atom, rest, way, offset=half).travel):
+                break
+            moved = half
+        return moved
 
     def _joint_axes(self, names: Iterable[str], ways: Ways) -> list[FloatArray]:
         inside = set(names)

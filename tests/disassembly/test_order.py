@@ -157,6 +157,17 @@ def test_a_t_foot_goes_through_the_wide_end_of_its_keyhole_in_two_moves() -> Non
     assert deepest(scene_of(solids, joints), order.steps[1]) <= 0
 
 
+def test_a_first_move_is_no_longer_than_twice_what_is_needed() -> None:
+    """A pin in a blind hole under a high ceiling leaves sideways as soon as it is out of its hole."""
+    case = block((0, 60), (0, 60), (0, 10)) + block((0, 60), (50, 60), (0, 300)) + block((0, 60), (0, 60), (290, 300))
+    pin = block((28, 32), (28, 32), (4, 20))
+    order = ordered({"case": case - block((27.9, 32.1), (27.9, 32.1), (4, 11)), "pin": pin}, [fixed("f", "case", "pin")], "case")
+    assert order.ok
+    *_, down = order.steps[1].moves
+    assert down.direction == (0, 0, -1)
+    assert 6.0 - 0.1 <= down.length_mm <= 12.0
+
+
 def test_parts_that_lock_each_other_into_a_base_go_in_as_a_sub_assembly() -> None:
     # a dovetailed pair that separates along y only, in a pit that is as long as the pair
     pit = block((0, 40), (0, 40), (0, 30)) - block((5, 35), (5, 35), (5, 31))

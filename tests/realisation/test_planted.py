@@ -45,7 +45,7 @@ COVER = Pos(0, 0, 20.2) * Box(60, 60, 10)
 YOKE = Pos(0, 0, -14) * Box(44, 12, 6) + Pos(-19, 0, -2) * Box(6, 12, 24) + Pos(19, 0, -2) * Box(6, 12, 24)
 FORK_A = YOKE - Rot(Y=90) * Cylinder(3.1, 60)
 FORK_B = Rot(X=180) * (Rot(Z=90) * FORK_A)
-CROSS = Rot(Y=90) * Cylinder(3, 44) + Rot(X=90) * Cylinder(3, 44) + Sphere(6)
+CROSS = Rot(Y=90) * Cylinder(3, 44) + Rot(X=90) * Cylinder(3, 44) + Box(31.6, 31.6, 12)  # its hub lies between the arms of both forks
 
 
 def _carried(kind: str, limits: dict[str, Any]) -> list[Planted]:
@@ -75,7 +75,7 @@ FAULTS = [
     Planted("planar: plates apart", "planar", {"a": TABLE, "b": Pos(0, 0, 30) * PLATE}, PLANE, UNMADE),
     Planted("planar: a rod on a table", "planar", {"a": TABLE, "b": Pos(0, 0, 10.1) * (Rot(Y=90) * Cylinder(5, 30))}, PLANE, UNMADE),
     Planted("universal: no cross", "universal", {"a": FORK_A, "b": FORK_B}, SWING, UNMADE),
-    Planted("universal: cross too thin", "universal", {"a": FORK_A, "b": FORK_B, "c": Rot(Y=90) * Cylinder(1.5, 44) + Rot(X=90) * Cylinder(1.5, 44)}, SWING, UNMADE, cross=True),
+    Planted("universal: cross too thin", "universal", {"a": FORK_A, "b": FORK_B, "c": Rot(Y=90) * Cylinder(1.5, 44) + Rot(X=90) * Cylinder(1.5, 44) + Sphere(6)}, SWING, UNMADE, cross=True),
 ]  # fmt: skip
 
 GOOD = [
