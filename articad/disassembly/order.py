@@ -219,6 +219,7 @@ class _Taking:
             fastened={joint.name: self.fastenings[joint.name] for joint in joints if joint.name in self.fastenings},
             strength="permitted" if forced else "proven",
             permitted=forced,
+            forced_mm=round(self._overlap(moving, placed, way, ways), _ROUNDED) if forced and not first.any() else 0.0,
         )
 
     # ------------------------------------------------------------------ what can be removed
@@ -263,6 +264,8 @@ class _Taking:
         A handle comes from the front of its door, not from above, all along the door.
         """
         moving, ways = found.parts, found.ways
+        if any(frozenset((a, b)) in self.forced for a in moving for b in staying):
+            return self._gentlest(found, staying)
         joined = {end for joint in self.joints for end in (joint.parent, joint.child) if {joint.parent, joint.child} & set(moving)}
         partners = [name for name in staying if name in joined] or staying
         points = np.concatenate([ways.points(name) for name in moving])
@@ -276,6 +279,25 @@ class _Taking:
             if away < best[0] and rises and np.isinf(ways.stop(moving, staying, way).travel):
                 best = (away, way)
         return replace(found, way=best[1])
+
+    def _gentlest(self, found: _Removal, staying: Sequence[str]) -> _Removal:
+        """Return the removal in the direction in which parts that are joined by force overlap over the shortest way."""
+        if found.first.any():
+            return found
+        moving, ways = found.parts, found.ways
+        best = (self._overlap(moving, staying, found.way, ways), found.way)
+        for way in distinct([*np.eye(3), *(axis for name in moving for axis in ways_of(self.scene, ways.poses, name))]):
+            if best[0] > 0.0 and np.isinf(ways.stop(moving, staying, way).travel):
+                overlap = self._overlap(moving, staying, way, ways)
+                if overlap < best[0] - _LEAST_MM:
+                    best = (overlap, way)
+        return replace(found, way=best[1])
+
+    def _overlap(self, moving: Sequence[str], staying: Sequence[str], way: FloatArray, ways: Ways) -> float:
+        """Return how far from its place a pair that is joined by force first meets when it comes from outside [mm]."""
+        far = ways.clear_length(moving, staying, way)
+        pairs = [(a, b) for a in moving for b in staying if frozenset((a, b)) in self.forced and np.isfinite(ways.travel(a, b, way))]
+        return max((far - ways.travel(a, b, -way, far * way) for a, b in pairs), default=0.0)
 
     def _in_two_moves(self, left: Sequence[Atom], base: str) -> _Removal | None:
         """Return an atom that leaves after a first move in another direction: out of a keyhole, over a lip."""

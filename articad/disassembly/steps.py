@@ -65,6 +65,7 @@ class AssemblyStep(_Form):
         fastened: How those of them are held together whose fastening is stated.
         strength: "proven": free of collision all along the path; "permitted": so but for pairs that are fastened by force, such as a snap, or bought as one.
         permitted: These pairs, with their fastening.
+        forced_mm: Length of the end of the path on which such a pair overlaps; 0 where it is not known.
     """
 
     number: int
@@ -78,6 +79,7 @@ class AssemblyStep(_Form):
     fastened: dict[str, Fastening] = Field(default_factory=dict)
     strength: Literal["proven", "permitted"] = "proven"
     permitted: tuple[tuple[str, str, Fastening], ...] = ()
+    forced_mm: float = 0.0
 
 
 def shown_path(step: AssemblyStep, size: float) -> FloatArray:

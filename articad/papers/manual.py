@@ -195,7 +195,8 @@ class _Manual:
             lines.append(f"{len(step.joints) - _MOST_JOINTS} further joints.")
         if step.permitted:
             pairs = "; ".join(f"{a} and {b}: {_FASTENED[how]}" for a, b, how in step.permitted)
-            lines.append(f"Not proven, joined by force or bought as one: {pairs}.")
+            where = f" over the last {step.forced_mm:.4g} mm" if step.forced_mm else ""
+            lines.append(f"Not proven{where}, joined by force or bought as one: {pairs}.")
         elif step.moves:
             far = ", then ".join(f"{move.length_mm:.4g} mm" for move in step.moves)
             lines.append(f"Path of {far}: proven free of collisions.")

@@ -102,6 +102,18 @@ def test_a_part_that_snaps_into_place_is_a_permitted_step() -> None:
     assert order.steps[1].permitted == (("thing", "box", "snap"),)
 
 
+def test_what_is_joined_by_force_comes_from_where_it_meets_least() -> None:
+    """A peg behind a lip 2 mm from its place, under a roof: it snaps over the lip, and does not come through the roof."""
+    case = block((0, 60), (0, 60), (0, 10)) + block((0, 60), (0, 4), (10, 14)) + block((0, 60), (0, 60), (40, 50))
+    case += block((0, 60), (56, 60), (10, 40)) + block((0, 4), (0, 60), (10, 40)) + block((56, 60), (0, 60), (10, 40))
+    peg = block((20, 30), (6, 20), (10, 20))
+    order = ordered({"case": case, "peg": peg}, [fixed("f", "case", "peg")], "case", fastenings={"f": "snap"})
+    (step,) = order.steps[1:]
+    assert step.strength == "permitted"
+    assert step.moves[0].direction == (0, 1, 0)
+    assert step.forced_mm == pytest.approx(20.0, abs=0.1)  # from the front edge of the lip to the back of the peg
+
+
 def test_screws_and_adhesive_do_not_let_shapes_through_each_other() -> None:
     for how in ("screw", "adhesive"):
         order = ordered({"box": BOX + LID, "thing": INSIDE}, [fixed("b", "box", "thing")], "box", fastenings={"b": how})
