@@ -20,29 +20,14 @@ import time
 import urllib.request
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from benchmarks.timing import processor_seconds
+
 ROOT = Path(__file__).resolve().parents[1]
 PLAN_S, SCRIPT_S = 2.0, 3.0  # goals, seconds until the new page is on the screen
 PAGE_ASKS_S = 0.5
 ROUNDS = 3
-TICK = os.sysconf("SC_CLK_TCK")
-
-
-def processor_seconds(root: int) -> float:
-    """Return the processor time of a process, of what it started and waited for, and of its living descendants [s]."""
-    times, parent = {}, {}
-    for folder in Path("/proc").glob("[0-9]*"):
-        try:
-            fields = (folder / "stat").read_text().rpartition(")")[2].split()
-        except OSError:  # it has ended
-            continue
-        parent[int(folder.name)] = int(fields[1])
-        times[int(folder.name)] = sum(map(int, fields[11:15])) / TICK
-    total, around = 0.0, [root]
-    while around:
-        each = around.pop()
-        total += times.get(each, 0.0)
-        around += [child for child, of in parent.items() if of == each]
-    return total
 
 
 def version(address: str) -> str:
