@@ -39,7 +39,7 @@ def test_readme_and_home_open_with_a_picture_that_moves_and_loads_at_once() -> N
 def test_home_opens_with_the_lamp_and_every_other_live_model_is_one_click_away() -> None:
     home = (ROOT / "docs" / "index.md").read_text()
 
-    assert home.index("live/desk_lamp.html#play") < home.index("./scripts/demo")
+    assert home.index("live/desk_lamp.html#moving") < home.index("./scripts/demo")
     for name in NAMES:
         assert f'"live/{name}.html' in home
         if name != "desk_lamp":

@@ -139,6 +139,39 @@ def test_views_sections_names_and_theme_do_what_they_say(open_page: Open, screen
     assert_silent(opened)
 
 
+def test_the_cube_turns_with_the_camera_and_each_face_looks_at_its_side(open_page: Open, screen: dict[str, Any]) -> None:
+    opened = open_page(report_page(hinged()), **screen)
+    shown = "[...document.querySelectorAll('#cube g')].filter(g => g.style.display !== 'none').map(g => g.textContent)"
+    looking = (
+        "() => { articad.view.draw(); return articad.view.camera.position.clone().sub(articad.view.controls.target).normalize().toArray() }"
+    )
+
+    assert sorted(opened(shown)) == ["front", "right", "top"]
+    opened.page.locator("#cube g", has_text="right").click()
+    assert opened(looking) == pytest.approx([1, 0, 0], abs=1e-3)
+    assert opened(shown) == ["right"]
+    opened("() => { articad.view.turn(0.6, 0.4); articad.view.draw() }")
+    assert sorted(opened(shown)) == ["back", "right", "top"]
+    assert_silent(opened)
+
+
+def test_names_keep_clear_of_each_other(open_page: Open) -> None:
+    """Seen from above, base and lid have their middles at the same place."""
+    opened = open_page(report_page(hinged()))
+    opened.page.click("[data-view=top]")
+    opened.page.click("#tool-names")
+    opened("articad.view.draw()")
+
+    boxes = opened(
+        "[...document.querySelectorAll('#labels .part')].map(e => { const b = e.getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom] })"
+    )
+    assert len(boxes) == 3
+    for index, (left, top, right, bottom) in enumerate(boxes):
+        for other in boxes[:index]:
+            assert left >= other[2] or right <= other[0] or top >= other[3] or bottom <= other[1], boxes
+    assert opened("[...document.querySelectorAll('#leaders line')].some(line => line.style.display === '')"), "one is led to its place"
+
+
 def test_a_dragged_part_stays_under_the_pointer(open_page: Open, screen: dict[str, Any]) -> None:
     assembly = hinged()
     opened = open_page(report_page(assembly), **screen)
@@ -239,7 +272,7 @@ def test_a_linked_page_plays_unless_motion_is_unwanted(open_page: Open, chromium
     for motion, plays in (("no-preference", "true"), ("reduce", "false")):
         context = chromium.new_context(reduced_motion=motion)
         page = context.new_page()
-        page.goto(file.as_uri() + "#play")
+        page.goto(file.as_uri() + "#moving")
         page.wait_for_selector("html[data-ready]", state="attached")
         assert page.get_attribute("#play", "aria-pressed") == plays
         context.close()

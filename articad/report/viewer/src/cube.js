@@ -24,6 +24,9 @@ export class Cube {
 
   // Turn as the camera does; `e` are the elements of the matrix from the world to the camera, column by column.
   turn(e) {
+    const key = e.slice(0, 11).join();
+    if (key === this.key) return; // the page is laid out again for nothing else
+    this.key = key;
     const seen = ([x, y, z]) => [0, 1, 2].map((k) => e[k] * x + e[4 + k] * y + e[8 + k] * z);
     const number = (value) => value.toFixed(2);
     for (const { group, side, text, normal, right, up } of this.faces) {

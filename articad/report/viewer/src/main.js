@@ -565,7 +565,7 @@ async function link() {
 function restoreLink() {
   const text = location.hash.slice(1);
   if (!text) return;
-  if (text === "play") {
+  if (text === "moving") { // no element has this name: the browser would scroll to it
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) $("play").click();
     return;
   }
