@@ -16,12 +16,12 @@ from tests.freecad.public_documents import DOCUMENTS, Document, Json, judge, rea
 
 HERE = Path(__file__).parent
 PLANTED: dict[str, Callable[[Json], Any]] = {  # what FreeCAD might have found otherwise
-    "pose": lambda seen: seen["parts"][-1]["pose"][0].__setitem__(3, seen["parts"][-1]["pose"][0][3] + 1e-5),
+    "pose": lambda seen: seen["parts"][-1]["pose"][0].__setitem__(3, seen["parts"][-1]["pose"][0][3] + 1e-4),
     "volume": lambda seen: seen["parts"][-1]["solids"][0].update(volume=seen["parts"][-1]["solids"][0]["volume"] * (1 + 1e-5)),
     "density": lambda seen: seen["parts"][-1].update(densities=[7850.0]),
     "part": lambda seen: (seen["parts"].append(seen["parts"][-1]), seen["solved"].append(seen["solved"][-1])),
     "solid": lambda seen: seen["parts"][-1]["solids"].append(seen["parts"][-1]["solids"][0]),
-    "frame": lambda seen: seen["joints"][0]["frames"][1][2].__setitem__(3, seen["joints"][0]["frames"][1][2][3] + 1e-5),
+    "frame": lambda seen: seen["joints"][0]["frames"][1][2].__setitem__(3, seen["joints"][0]["frames"][1][2][3] + 1e-4),
     "joint": lambda seen: seen["joints"].append(seen["joints"][0] | {"label": "Forgotten"}),
     "pair": lambda seen: seen["joints"][0].update(parts=[1, 2]),
 }
