@@ -51,7 +51,7 @@ class Document:
     Attributes:
         name: Name in the table.
         repository: Repository on GitHub.
-        commit: Its commit.
+        commit: Its commit or tag.
         path: The document in it.
         refused: What the message names if articad refuses the document; empty if it is read.
     """
@@ -69,7 +69,7 @@ class Document:
 
 
 DOCUMENTS: Final = (
-    Document("AssemblyExample", "FreeCAD/FreeCAD", "97b15924008278776ef179cf8154da09be748d08", "data/examples/AssemblyExample.FCStd"),
+    Document("AssemblyExample", "FreeCAD/FreeCAD", "1.0.0", "data/examples/AssemblyExample.FCStd"),
     Document("GitCAD", "Mikestriken/GitCAD", "f97e79afad972a36eddf4d7115f0838ab4686f41", "FreeCAD_Automation/tests/AssemblyExample.FCStd"),
     Document(
         "universal_joint",
@@ -315,7 +315,7 @@ def page(names: list[str]) -> tuple[str, list[str]]:
         "|---|---|---|---|---|---|---|---|---|",
     ]
     sources = [
-        f"- {document.name}: `{document.path}` of [{document.repository}](https://github.com/{document.repository}), commit {document.commit[:12]}"
+        f"- {document.name}: `{document.path}` of [{document.repository}](https://github.com/{document.repository}), at {document.commit[:12]}"
         for document in DOCUMENTS
     ]
     return "\n".join([HEAD, *table, *rows, "", "The documents:", "", *sources]) + "\n", wrong
