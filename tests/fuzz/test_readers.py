@@ -322,3 +322,13 @@ def test_lengths_whose_squares_overflow_are_an_error_of_ours() -> None:
     rack = Coupling("teeth", "rack", "pinion", "rack", 10.0, 0.0)
     with pytest.raises(KinematicsError, match="E_NONFINITE"):
         _ = Mechanism(("ground", "rack", "pinion"), "ground", joints, [rack]).mobility
+
+
+def test_a_short_joint_whose_side_is_a_list_is_an_error_of_ours() -> None:
+    document = json.loads((CORPUS / "plan" / "short.json").read_bytes())
+    joints = document["joints"].values() if isinstance(document["joints"], dict) else document["joints"]
+    for joint in joints:
+        if isinstance(joint, dict):
+            joint["pin_on"] = ["parent"]
+    with pytest.raises(PlanError, match="short form cannot be read"):
+        AssemblyPlan.from_json(document)
