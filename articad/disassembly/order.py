@@ -39,6 +39,7 @@ _HALVINGS: Final = 8  # of a first move
 _PARALLEL: Final = 1e-9  # of a cosine
 _FAR: Final = 0.5  # of its size: a way that is longer is compared with others
 _NEARER: Final = 0.5  # of that way: only a way as short replaces it
+_GENTLER: Final = 0.9  # of the material that is pushed through others: only a way with less replaces it
 _FLAT: Final = 1e-6  # of a unit vector's height
 _LEAST_MM: Final = 0.3  # of the travel in a first direction: less is play
 
@@ -229,7 +230,8 @@ class _Taking:
     ) -> _Removal | None:
         """Return the best set of atoms that can leave in a straight line, or None.
 
-        Sets that leave the rest connected come first, then those that leave upwards, so that parts are lowered into place, then sideways.
+        Sets that leave the rest connected come first, then those of which least material is pushed through what they are joined to by
+        force, then those that leave upwards, so that parts are lowered into place, then sideways.
 
         Args:
             left: The atoms.
@@ -239,14 +241,15 @@ class _Taking:
         """
         ways, best = ways or self.ways, None
         for rank, directions in enumerate(self._directions(left, ways)):
-            if rank >= _FURTHER and ways is not self.ways:
+            if rank >= _FURTHER and (ways is not self.ways or (best is not None and best.key[0] == 0)):
                 break
             for way in directions:
                 for atoms, direction in self._leaving(left, base, way, ways):
-                    found = _Removal(atoms, direction, ways, dict(at or {}), np.zeros(3), self._key(atoms, left, direction, rank))
+                    key = self._key(atoms, left, direction, rank, self._met(atoms, left, direction, ways))
+                    found = _Removal(atoms, direction, ways, dict(at or {}), np.zeros(3), key)
                     if best is None or found.key < best.key:
                         best = found
-            if best is not None and best.key[0] == 0:
+            if best is not None and best.key[:2] == (0.0, 0.0):
                 return best
         return best
 
@@ -281,17 +284,23 @@ class _Taking:
         return replace(found, way=best[1])
 
     def _gentlest(self, found: _Removal, staying: Sequence[str]) -> _Removal:
-        """Return the removal in the direction in which parts that are joined by force overlap over the shortest way."""
+        """Return the removal in the direction in which least material is pushed through what the parts are joined to by force."""
         if found.first.any():
             return found
         moving, ways = found.parts, found.ways
-        best = (self._overlap(moving, staying, found.way, ways), found.way)
+        best = (self._met([moving], [moving, tuple(staying)], found.way, ways), found.way)
         for way in distinct([*np.eye(3), *(axis for name in moving for axis in ways_of(self.scene, ways.poses, name))]):
             if best[0] > 0.0 and np.isinf(ways.stop(moving, staying, way).travel):
-                overlap = self._overlap(moving, staying, way, ways)
-                if overlap < best[0] - _LEAST_MM:
-                    best = (overlap, way)
+                met = self._met([moving], [moving, tuple(staying)], way, ways)
+                if met < _GENTLER * best[0]:
+                    best = (met, way)
         return replace(found, way=best[1])
+
+    def _met(self, atoms: Sequence[Atom], left: Sequence[Atom], way: FloatArray, ways: Ways) -> float:
+        """Return how much material of atoms is pushed through parts that they are joined to by force, to two digits [mm³]."""
+        moving = [name for atom in atoms for name in atom]
+        pairs = [(a, b) for a in moving for atom in left for b in atom if b not in moving and frozenset((a, b)) in self.forced]
+        return float(f"{sum(ways.met(a, b, way) for a, b in pairs if np.isfinite(ways.travel(a, b, way))):.2g}")
 
     def _overlap(self, moving: Sequence[str], staying: Sequence[str], way: FloatArray, ways: Ways) -> float:
         """Return how far from its place a pair that is joined by force first meets when it comes from outside [mm]."""
@@ -366,12 +375,20 @@ class _Taking:
                     continue
             yield tuple(left[at] for at in np.flatnonzero(chosen).tolist()), direction
 
-    def _key(self, atoms: tuple[Atom, ...], left: Sequence[Atom], way: FloatArray, rank: int) -> tuple[float, ...]:
+    def _key(self, atoms: tuple[Atom, ...], left: Sequence[Atom], way: FloatArray, rank: int, met: float = 0.0) -> tuple[float, ...]:
         names = [name for atom in atoms for name in atom]
         rest = [name for atom in left if atom not in atoms for name in atom]
         loose = self._pieces(rest) + self._pieces(names) - 1 > self._pieces([*names, *rest])
         sinks = float(way[2]) < -_FLAT  # it would be put in place from below
-        return (float(loose), float(sinks), float(rank), float(len(names)), -max(self.height[n] for n in names), -self.declared[names[-1]])
+        return (
+            float(loose),
+            met,
+            float(sinks),
+            float(rank),
+            float(len(names)),
+            -max(self.height[n] for n in names),
+            -self.declared[names[-1]],
+        )
 
     def _pieces(self, names: Iterable[str]) -> int:
         """Return how many pieces joints leave of some parts."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
-from articad.disassembly.contacts import Outline, first_contacts
+from articad.disassembly.contacts import Outline, first_contacts, material_met
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import inwards
@@ -89,6 +89,7 @@ class Ways:
         self._outlines: dict[tuple[str, float, int], Outline] = {}
         self._directions: list[FloatArray] = []
         self._known: dict[tuple[str, str, int, tuple[float, ...]], tuple[float, float]] = {}
+        self._met: dict[tuple[str, str, int, int], float] = {}
 
     def travel(self, part: str, other: str, direction: FloatArray, offset: FloatArray | None = None) -> float:
         """Return how far a part moves along a unit vector `(3,)` before it meets another part [mm]; infinity if it never does.
@@ -137,6 +138,15 @@ class Ways:
                 if travel < first.travel:
                     first = Halt(travel, part, other)
         return first
+
+    def met(self, part: str, other: str, direction: FloatArray) -> float:
+        """Return how much material of a part another part is in the way of, when the part leaves along a unit vector `(3,)` [mm³]."""
+        at, sign = self._index(direction)
+        key = (part, other, at, sign)
+        if key not in self._met:
+            both = (self._outline(part, self.depth(part, other), at), self._outline(other, 0.0, at))
+            self._met[key] = material_met(*(each if sign > 0 else each.reversed for each in both))
+        return self._met[key]
 
     def blocks(self, part: str, other: str, direction: FloatArray) -> bool:
         """Return whether another part stops a part on its way to infinity."""

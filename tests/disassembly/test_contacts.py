@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from articad.connectors import SE3
-from articad.disassembly.contacts import Outline, first_contacts
+from articad.disassembly.contacts import Outline, first_contacts, material_met
 from articad.geometry import TriMesh
 from articad.geometry.shapes import box, cylinder, tube
 from articad.interference.body import body_of
-from articad.interference.overlap import distance
+from articad.interference.overlap import distance, overlap
 from tests.interference.mechanisms import random_rotation
 
 SHAPES = (box(4, 7, 11), cylinder(5, 9, 24), tube(4, 6, 8, 24))
@@ -61,3 +61,18 @@ def test_a_pin_leaves_its_bore_along_the_axis_only() -> None:
     for way, wanted in (((0.0, 0.0, 1.0), math.inf), ((1.0, 0.0, 0.0), 0.05)):
         a, b = (Outline.of(corners(mesh, SE3.identity()), np.array(way)) for mesh in (pin, bore))
         assert first_contacts(a, b)[0] == pytest.approx(wanted, abs=1e-3)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_material_that_meets_a_block_is_what_lies_below_its_top(seed: int) -> None:
+    """A block that is met from below is met by all that lies in the block lengthened downwards: measured by a Boolean."""
+    rng = np.random.default_rng(seed)
+    shape, T = SHAPES[seed % len(SHAPES)], random_rotation(rng)
+    block, down = SE3.from_translation(rng.uniform(-3, 3, 3)), SE3.from_translation((0, 0, -100.0))
+    expected = overlap(body_of(box(6, 5, 204)), body_of(shape), (block @ down).inverse() @ T).volume  # its top is where that of `met` is
+    turned = random_rotation(rng)
+    way = turned.rotation[:, 2]
+    moving, staying = (Outline.of(corners(mesh, turned @ at), way) for mesh, at in ((shape, T), (box(6, 5, 4), block)))
+    assert material_met(moving, staying) == pytest.approx(expected, rel=0.02, abs=2.0)
+    backwards = [Outline.of(corners(mesh, turned @ at), -way).reversed for mesh, at in ((shape, T), (box(6, 5, 4), block))]
+    assert material_met(*backwards) == pytest.approx(expected, rel=0.02, abs=2.0)

@@ -114,6 +114,17 @@ def test_what_is_joined_by_force_comes_from_where_it_meets_least() -> None:
     assert step.forced_mm == pytest.approx(20.0, abs=0.1)  # from the front edge of the lip to the back of the peg
 
 
+def test_a_rail_that_snaps_between_two_sides_comes_from_the_open_front_before_the_door() -> None:
+    """The way through the back is a quarter as long, but the whole rail would go through it."""
+    case = block((0, 200), (0, 60), (0, 100)) - block((5, 195), (-1, 56), (5, 95))
+    solids = {"case": case - block((2, 198), (46, 54), (60, 68)), "rail": block((2, 198), (46, 54), (60, 68))}
+    solids["door"] = block((0, 200), (-6, 0), (0, 100))
+    order = ordered(solids, [replace(fixed("r", "case", "rail"), fastening="snap"), fixed("d", "case", "door")], "case")
+    assert names(order) == [("case",), ("rail",), ("door",)]
+    assert order.steps[1].moves[0].direction == (0, 1, 0)
+    assert order.steps[1].forced_mm == pytest.approx(54.0, abs=0.1)
+
+
 def test_screws_and_adhesive_do_not_let_shapes_through_each_other() -> None:
     for how in ("screw", "adhesive"):
         order = ordered({"box": BOX + LID, "thing": INSIDE}, [fixed("b", "box", "thing")], "box", fastenings={"b": how})
