@@ -531,8 +531,9 @@ def _generic(joint: Joint, name: str, ends: tuple[str, str], frames: tuple[SE3, 
         step = free.get(degree)
         if step is None:
             low, high = "1", "-1"
-        elif step.advances:  # it follows another
-            continue
+        elif step.advances:  # the slide of a screw follows its turn; Newton locks degrees without a limit
+            travel = (joint.lead / math.tau * bounds[0] for bounds in (joint.limits.lower, joint.limits.upper))
+            low, high = (_in_usd(bound, "mm") for bound in sorted(travel))
         else:
             at = step.coordinate or 0
             low, high = (_in_usd(bounds[at], joint.type.units[at]) for bounds in (joint.limits.lower, joint.limits.upper))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -58,6 +59,20 @@ def test_limits_are_degrees_and_metres_and_other_degrees_are_locked() -> None:
     assert "limit:transX:physics:low = 1\n" in rod
     assert "limit:transZ:physics:low = -0.05" in rod
     assert "limit:rotZ:physics:high = inf" in rod
+
+
+@pytest.mark.parametrize("lead", [2.0, -2.0])
+def test_the_slide_of_a_screw_has_the_travel_of_its_turn(lead: float) -> None:
+    """Newton locks the degrees of a joint that have no limit, and with it the whole loop of a screw jack."""
+    bed, nut = block("bed", on=frame()), block("nut", on=frame())
+    screw = declare.screw("screw", bed["on"], nut["on"], lead=lead, limits=(-3 * math.tau, 5 * math.tau))
+    text = text_of(Assembly.from_parts("press", parts=[bed, nut], joints=[screw], ground="bed"))
+    rows = text.partition('def PhysicsJoint "screw"')[2].partition("\n        }")[0]
+    limits = {key: float(value) for key, value in re.findall(r"limit:(\w+:physics:\w+) = (\S+)", rows)}
+
+    assert len(limits) == 12
+    assert (limits["rotZ:physics:low"], limits["rotZ:physics:high"]) == pytest.approx((-1080.0, 1800.0))
+    assert (limits["transZ:physics:low"], limits["transZ:physics:high"]) == pytest.approx(sorted((-0.003 * lead, 0.005 * lead)))
 
 
 def test_losses_of_couplings_and_screws_are_refused() -> None:
