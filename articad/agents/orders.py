@@ -102,7 +102,7 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
     if assembly.resolved is None or not pairs:
         return Findings(several)
     joined = [_Joined.of(scene, joint) for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
-    departed = _departed(assembly, assembly.resolved, joined) | _touching(several, assembly.resolved)
+    departed = _touching(several, assembly.resolved, joined) | _departed(assembly, assembly.resolved, joined)
     open_ones = [one for one in several if _is_open(one, assembly.resolved, departed)]
     doubted = {name for name, part in assembly.realised.items() if part.findings.of("W_SCALE")}
     if open_ones and (found := misplaced(assembly, scene, _sources(assembly.resolved), open_ones, verdicts, doubted=doubted)) is not None:
@@ -142,8 +142,11 @@ def source_of(name: str, resolved: ResolvedPlan) -> str:
     return name
 
 
-def _touching(findings: Iterable[Finding], resolved: ResolvedPlan) -> dict[str, str]:
-    """Return why scripts left out a clearance, by part: a fit has no gap, and one of its two parts alone is ordered with a clearance."""
+def _touching(findings: Iterable[Finding], resolved: ResolvedPlan, joined: Sequence[_Joined]) -> dict[str, str]:
+    """Return why scripts left out a clearance, by part.
+
+    A fit has no gap, one of its two parts alone is ordered with a clearance, and no bore or pin of this part shows it.
+    """
     found: dict[str, str] = {}
     for finding in findings:
         if finding.code not in {"E_FIT_TIGHT", "E_FIT_CONTACT"} or finding.value is None or abs(finding.value) > _ROUNDING_MM:
@@ -154,8 +157,13 @@ def _touching(findings: Iterable[Finding], resolved: ResolvedPlan) -> dict[str, 
             for name, value in resolved.parts[source].dimensions.items()
             if CLEARANCE.search(name) and value > _PLAY_MM
         }
-        if len(with_clearance) == 1:
-            ((source, name),) = with_clearance.items()
+        if len(with_clearance) != 1:
+            continue
+        ((source, name),) = with_clearance.items()
+        plain = {key: value for key, value in resolved.parts[source].dimensions.items() if not CLEARANCE.search(key)}
+        fits = [one.fits for one in joined if finding.where == f"joints.{one.joint.name}.fit"]
+        own = [surface for pair in itertools.chain.from_iterable(fits) for surface in pair if source_of(surface.part, resolved) == source]
+        if all(_stated_by(surface, plain) is not None for surface in own):
             found[source] = f"The fit has no gap, although {source} is ordered with {name!r}."
     return found
 
@@ -212,14 +220,15 @@ def _addressed(
 
 
 def _fitting(finding: Finding, joined: _Joined, fit: Fit, resolved: ResolvedPlan) -> str:
-    """Return the numbers of a plan that mend a fit: a dimension of the bore or the pin, or the declared gap as it is.
+    """Return the numbers of a plan that mend a fit: a dimension of the bore or the pin, or the fit declared as it is.
 
-    A bore of diameter D and a pin of diameter d have the gap (D - d) / 2. The new gap is the middle of the declared range.
+    A bore of diameter D and a pin of diameter d have the gap (D - d) / 2. The new gap is the middle of the declared range, or none where
+    contact is required.
     """
-    if finding.value is None:
+    if finding.value is None or (fit.gap_max is None and fit.contact == "forbidden"):
         return ""
     least, most = fit.gap_min or 0.0, fit.gap_max
-    meant = least if most is None else (least + most) / 2
+    meant = 0.0 if fit.contact == "required" else least if most is None else (least + most) / 2
     offers = []
     for bore, pin in joined.fits:
         for surface, diameter in ((bore, pin.diameter + 2 * meant), (pin, bore.diameter - 2 * meant)):
@@ -229,7 +238,10 @@ def _fitting(finding: Finding, joined: _Joined, fit: Fit, resolved: ResolvedPlan
                 name, times = stated
                 value = float(resolved.parts[source].dimensions[name]) + (diameter - surface.diameter) / times
                 offers.append(f"parts.{source}.dimensions.{name} to {value:.6g}")
-    if finding.value > 0.0:
+    if finding.code == "E_FIT_CONTACT":
+        if fit.contact == "required" and (most is None or finding.value <= most):
+            offers.append("contact to 'allowed' if the gap is meant as it is")
+    elif finding.value > 0.0:
         as_it_is = [min(least, math.floor(100 * finding.value) / 100), max(most or 0.0, math.ceil(100 * finding.value) / 100)]
         offers.append(f"{finding.where}.gap_mm to {as_it_is} if the gap is meant as it is")
     return f"Set {', or '.join(dict.fromkeys(offers))}." if offers else ""

@@ -175,7 +175,9 @@ def build(part):
 """
 
 
-def wheel_on_a_pin(pin: str = 'd["pin"] - d["clearance"]', **dimensions: float) -> tuple[dict[str, Any], Assembly]:
+def wheel_on_a_pin(
+    pin: str = 'd["pin"] - d["clearance"]', /, fit: dict[str, Any] | None = None, **dimensions: float
+) -> tuple[dict[str, Any], Assembly]:
     """A wheel whose bore has a radius of 4, on a pin with a radius of 4 less a clearance of 0.2."""
     own = {"plate": 5, "pin": 4, "clearance": 0.2, "radius": 12, "bore": 4} | dimensions
     bearing = {"z": [0, 0, 1], "x": [1, 0, 0], "o": [0, 0, 0], "label": "axis"}
@@ -190,7 +192,7 @@ def wheel_on_a_pin(pin: str = 'd["pin"] - d["clearance"]', **dimensions: float) 
     ]
     parts[1]["rest_pose"] = {"at": [0, 0, 0]}
     turn = {"name": "turn", "type": "revolute", "parent": "post.axis", "child": "wheel.axis", "angle_deg": "endless"}
-    document = plan("wheel", parts, turn | {"fit": {"gap_mm": [0.1, 0.3], "contact": "forbidden"}})
+    document = plan("wheel", parts, turn | {"fit": fit or {"gap_mm": [0.1, 0.3], "contact": "forbidden"}})
     scripts = {"post": POST.replace("PIN", pin), "wheel": WHEEL}
     made = Assembly.from_plan(AssemblyPlan.from_json(document), scripts, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1)
     return document, made
@@ -219,3 +221,23 @@ def test_a_clearance_that_one_script_left_out_is_its_authors() -> None:
 
 def test_a_wheel_as_it_was_ordered_has_no_fault() -> None:
     assert examine(wheel_on_a_pin()[1]).findings.ok
+
+
+def test_a_clearance_that_a_pin_shows_was_not_left_out() -> None:
+    _, made = wheel_on_a_pin(bore=3.8)  # as the plan orders it: the pin has its clearance, and fills the bore
+    found = [finding for finding in examine(made).findings.errors if finding.code.startswith("E_FIT")]
+
+    assert [(finding.route, finding.where) for finding in found] == [("design", "joints.turn.fit")]
+    assert "parts.wheel.dimensions.bore to 4," in found[0].hint
+
+
+def test_each_change_that_a_hint_offers_for_a_required_contact_ends_the_finding() -> None:
+    document, made = wheel_on_a_pin(fit={"gap_mm": [0, 0.3], "contact": "required"})
+    (found,) = [finding for finding in examine(made).findings.errors if finding.code.startswith("E_FIT")]
+    changed = [plan for plan in followed(found, document) if plan != document]
+
+    assert len(changed) == 3
+    for plan in changed:
+        own = {key: value for part in plan["parts"] for key, value in part["dimensions"].items()}
+        _, again = wheel_on_a_pin(fit=plan["joints"][0]["fit"], **own)
+        assert examine(again).findings.ok, plan["joints"]
