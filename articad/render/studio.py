@@ -37,7 +37,7 @@ _REACH = 0.32  # of the scene's size: how far the shadow on the ground extends
 _TILE = 61  # pixels after which the pattern of random rays repeats
 _SHADOW = 0.95  # darkness of the ground where nothing of the sky is seen
 _FADE = 0.8  # how far parts that are only context fade into the background
-_EDGE = 0.42  # strength of the lines along edges
+_EDGE = 0.62  # strength of the lines along edges
 _LAMPS_AWAY = 1.5  # of the scene's size: from its middle to the lamps
 _PARALLAX = 0.9  # how much lower the horizon is seen from a point that is higher by the scene's size
 _RINGS = 110  # rings of wood, about, over the scene's size
@@ -146,11 +146,19 @@ def _pass(scene: DrawnScene, camera: Camera, looks: _Surfaces) -> tuple[FloatArr
         line = ((rows + columns) % (7 * _SUPERSAMPLE) < _SUPERSAMPLE)[cut]
         lit[cut] = looks.color[index[cut]] * np.where(line, 0.35, 1.0)[:, None]
     color[seen] = lit
-    strength = edges(camera, buffers)[seen] * _EDGE
+    strength = _lines(edges(camera, buffers))[seen] * _EDGE
     color[seen] *= (1 - strength)[:, None]
     alpha = seen.astype(np.float64)
     alpha[seen] = np.where(looks.faded[index], 1 - _FADE, 1.0)
     return color, alpha
+
+
+def _lines(edge: FloatArray) -> FloatArray:
+    """Return edges as lines of one pixel of the picture: the fine pixels on both sides of each border."""
+    lines = edge.copy()
+    lines[1:] = np.maximum(lines[1:], edge[:-1])
+    lines[:, 1:] = np.maximum(lines[:, 1:], edge[:, :-1])
+    return lines
 
 
 def _points(camera: Camera, buffers: Buffers, seen: NDArray[np.bool_]) -> FloatArray:
