@@ -37,7 +37,7 @@ _REACH = 0.32  # of the scene's size: how far the shadow on the ground extends
 _TILE = 61  # pixels after which the pattern of random rays repeats
 _SHADOW = 0.95  # darkness of the ground where nothing of the sky is seen
 _FADE = 0.8  # how far parts that are only context fade into the background
-_EDGE = 0.62  # strength of the lines along edges
+_EDGE = 0.85  # strength of the lines along edges
 _LAMPS_AWAY = 1.5  # of the scene's size: from its middle to the lamps
 _PARALLAX = 0.9  # how much lower the horizon is seen from a point that is higher by the scene's size
 _RINGS = 110  # rings of wood, about, over the scene's size
@@ -255,7 +255,7 @@ def _light(
     metal, rough, gloss = looks.metal[index][:, None], looks.rough[index], looks.gloss[index]
     ways = [_LAMPS_AWAY * lamp - place for lamp in _lamps(camera)]
     key, fill, rim = (way / np.linalg.norm(way, axis=1, keepdims=True) for way in ways)
-    shaded = 0.12 + 0.88 * open_sky
+    shaded = 0.25 + 0.75 * open_sky
     ambient = (_GROUND + _SKY) / 2 + (_SKY - _GROUND) / 2 * normal[:, 2]
     lamps = _KEY * np.maximum(_along(normal, key), 0) * (0.35 + 0.65 * open_sky) + _FILL * np.maximum(_along(normal, fill), 0)
     diffuse = base * (ambient * shaded + lamps)[:, None]
@@ -268,7 +268,7 @@ def _light(
     for lamp, strength in ((key, 1.9), (fill, 1.0), (rim, 1.0)):
         sharp = 2.0 / (0.02 + spread**1.6 * 0.55)
         reflected = reflected + strength * (1 - 0.62 * spread) * np.exp(sharp * (_along(mirrored, lamp) - 1))
-    reflected = np.maximum(reflected, 0.05) * (0.3 + 0.7 * open_sky)
+    reflected = np.maximum(reflected, 0.05) * (0.45 + 0.55 * open_sky)
     mirror = 0.04 * gloss[:, None] * (1 - metal) + base * 1.12 * metal
     grazing = (1 - facing) ** 5 * (1 - 0.75 * spread) * np.minimum(gloss, 1.0)
     fresnel = mirror + (np.maximum(mirror, 0.6) - mirror) * grazing[:, None]
@@ -360,7 +360,7 @@ def _mean(fine: FloatArray) -> FloatArray:
 
 def _compressed(light: FloatArray) -> FloatArray:
     """Return light within 0 to 1: unchanged up to 0.7, then bent so that a value of 2 is almost white."""
-    knee = 0.7
+    knee = 0.45
     above = np.maximum(light - knee, 0)
     bent: FloatArray = np.minimum(light, knee) + (1 - knee) * (1 - np.exp(-above / (1 - knee)))
     return bent
