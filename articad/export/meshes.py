@@ -154,6 +154,10 @@ class MeshFiles:
             self.files[path] = _content(look, kind)
         return self.by_digest[mesh.digest]
 
+    def names(self) -> dict[str, str]:
+        """Return the digest of each mesh by the name of its file in the document."""
+        return {self.prefix + path: digest for digest, path in self.by_digest.items()}
+
     def deviation(self, mesh: TriMesh) -> float:
         """Return the deviation of the surface in the file from the mesh [mm]."""
         return self._drawn(mesh).deviation

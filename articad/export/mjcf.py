@@ -116,11 +116,23 @@ def write_mjcf(
     return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses, Findings(assumed_finding(assumed)))
 
 
-def rewritten(assembly: Assembly) -> Iterator[list[Any]]:
-    """Yield the bodies and constraints that `write_mjcf` writes, with the parts' own meshes for collision."""
-    again = Again(assembly)
-    model = lower(assembly, () if again.active or _starts_at_world(assembly) else RESERVED, as_it_came=assembly.foreign)
-    yield _Writer(assembly, model, MeshFiles(), again).mechanism()
+def mechanism_elements(root: Any) -> list[Any]:
+    """Return the elements of an MJCF document that state the mechanism: bodies, constraints, and the settings that change what they mean."""
+    return [element for path in ("compiler", "default", ".//include", "worldbody", "equality") for element in root.iterfind(path)]
+
+
+def rewritten(assembly: Assembly) -> Iterator[tuple[list[Any], dict[str, str]]]:
+    """Yield what `write_mjcf` states of the mechanism, without and with rotors of actuators, and the digests of the meshes by name."""
+    choices: tuple[Actuators | None, ...] = (None, "position")  # "motor" writes the same rotors
+    for actuators in choices:
+        again = Again(assembly)
+        model = lower(assembly, () if again.active or _starts_at_world(assembly) else RESERVED, as_it_came=assembly.foreign)
+        writer = _Writer(assembly, model, MeshFiles(), again)
+        root = writer.content((), actuators=actuators)
+        yield (
+            mechanism_elements(root),
+            {writer.assets[path]: digest for digest, path in writer.files.by_digest.items() if path in writer.assets},
+        )
 
 
 def _starts_at_world(assembly: Assembly) -> bool:
@@ -152,6 +164,15 @@ class _Writer:
         return [*(feature for feature in said if not (feature.key == "mass.missing" and feature.where in self.weighed)), *self.added]
 
     def document(self, contacts: Sequence[HullOverlap], *, actuators: Actuators | None) -> Any:
+        root = self.content(contacts, actuators=actuators)
+        custom = child(root, "custom")
+        written = [*root.iterfind("worldbody"), *root.iterfind("equality")]
+        for number_, record in enumerate(records(self.assembly, self.model, self.files, written)):
+            child(custom, "text", {"name": f"articad.{number_}.{record['kind']}", "data": dumps(record)})
+        return root
+
+    def content(self, contacts: Sequence[HullOverlap], *, actuators: Actuators | None) -> Any:
+        """Return the document without records."""
         root = etree.Element("mujoco", model=self.assembly.name if self.assembly.foreign else self.model.name)
         child(root, "compiler", {"angle": "radian", "autolimits": "true", "inertiafromgeom": "false", "balanceinertia": "false"})
         if not self.again.active:
@@ -170,21 +191,9 @@ class _Writer:
             self.again.drop_unknown_targets(root)
             self.again.sections(root, same_joints=self._has_the_files_joints(world))
         self._home(root, world, servos)
-        custom = child(root, "custom")
-        for number_, record in enumerate(records(self.assembly, self.model, self.files, [world, *root.iterfind("equality")])):
-            child(custom, "text", {"name": f"articad.{number_}.{record['kind']}", "data": dumps(record)})
         if not len(self.asset):
             root.remove(self.asset)
         return root
-
-    def mechanism(self) -> list[Any]:
-        """Return the bodies and the constraints between them alone."""
-        root = etree.Element("mujoco")
-        self.asset = etree.Element("asset")
-        world = child(root, "worldbody")
-        self._bodies(world)
-        self._equalities(root)
-        return [world, *root.iterfind("equality")]
 
     def _has_the_files_joints(self, world: Any) -> bool:
         """True if the joints are those of the file, in its order, so that the values of its keys are valid."""

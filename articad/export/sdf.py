@@ -92,11 +92,19 @@ def write_sdf(
     return Bundle({f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses, Findings(assumed_finding(assumed)))
 
 
-def rewritten(assembly: Assembly) -> Iterator[list[Any]]:
-    """Yield the links and joints that `write_sdf` writes, with the parts' own meshes for collision."""
+def mechanism_elements(root: Any) -> list[Any]:
+    """Return the elements of an SDFormat document that state the mechanism: links, joints, and what places or adds others."""
+    inside = [
+        element for tag in ("link", "joint", "pose", "static", "frame", "include", "model") for element in root.iterfind(f"model/{tag}")
+    ]
+    return [*inside, *root.iterfind("include"), *root.iterfind("world")]
+
+
+def rewritten(assembly: Assembly) -> Iterator[tuple[list[Any], dict[str, str]]]:
+    """Yield what `write_sdf` states of the mechanism, and the digests of the meshes by name."""
     lowered = lower(assembly, () if ground_is_world(assembly) else RESERVED, part_frames=assembly.foreign)
-    root = _Writer(assembly, lowered, MeshFiles()).document()
-    yield [*root.iterfind("model/link"), *root.iterfind("model/joint")]
+    writer = _Writer(assembly, lowered, MeshFiles())
+    yield mechanism_elements(writer.document()), writer.files.names()
 
 
 class _Kept:

@@ -126,8 +126,13 @@ def write_urdf(
     return Bundle({**main, **files.files}, losses, Findings(assumed_finding(_assumed(model, keeper, all_of=True))))
 
 
-def rewritten(assembly: Assembly) -> Iterator[list[Any]]:
-    """Yield the links and joints that `write_urdf` writes, for each choice that changes them, without collision geometry."""
+def mechanism_elements(root: Any) -> list[Any]:
+    """Return the elements of a URDF document that state the mechanism."""
+    return [*root.iterfind("link"), *root.iterfind("joint")]
+
+
+def rewritten(assembly: Assembly) -> Iterator[tuple[list[Any], dict[str, str]]]:
+    """Yield what `write_urdf` states of the mechanism, for each choice that changes it, and the digests of the meshes by name."""
     for keep_frames in (False, True):
         model = lower(assembly, part_frames=keep_frames)
         keeper = _Keeper(assembly, model)
@@ -138,12 +143,12 @@ def rewritten(assembly: Assembly) -> Iterator[list[Any]]:
                 yield _alone(model, follows | linear_followers(assembly, model), keeper)
 
 
-def _alone(model: LoweredModel, follows: dict[str, Follows], keeper: _Keeper) -> list[Any]:
+def _alone(model: LoweredModel, follows: dict[str, Follows], keeper: _Keeper) -> tuple[list[Any], dict[str, str]]:
     root, files = etree.Element("robot"), MeshFiles()
     files.expect(link.part for link in model.links)
     _tree(root, model, follows, files, keeper)
     keeper.write(root)
-    return [*root.iterfind("link"), *root.iterfind("joint")]
+    return mechanism_elements(root), files.names()
 
 
 def _features_of_file(assembly: Assembly, model: LoweredModel, keeper: _Keeper) -> list[Feature]:

@@ -1,8 +1,8 @@
 """Whether the records in a file describe the file's own elements: a stranger can write any records, with a fingerprint that fits.
 
 The assembly that the records give is written again, and both files are reduced to what other programs see of the mechanism: links with
-their masses, visual shapes and their places, joints with their frames, axes and limits. Numbers may differ by rounding. Left out is what
-writers choose from settings or derive: collision geometry, efforts, velocities and damping.
+their masses, visual shapes with their places and the content of their meshes, joints with their frames, axes and limits. Numbers may
+differ by rounding. Left out is what writers choose from settings or derive: collision geometry, efforts, velocities and damping.
 """
 
 from __future__ import annotations
@@ -15,40 +15,55 @@ from lxml import etree
 
 from articad.assembly import Assembly
 from articad.errors import ArticadError
+from articad.geometry.part import Part
 
 __all__ = ["describes", "names_its_meshes"]
 
-Rewritten = Callable[[Assembly], Iterator[Sequence[Any]]]
-"""Writes an assembly again, in each way that changes what is compared, and yields the elements that the records are about."""
+Digests = Callable[[str], str | None]
+"""Returns the digest of a mesh by its name in the elements; None if its file is not there."""
+
+Rewritten = Callable[[Assembly], Iterator[tuple[Sequence[Any], Mapping[str, str]]]]
+"""Writes an assembly again, in each way that changes what is compared; yields the elements that the records are about, and the digests of
+their meshes by name."""
 
 _LEFT_OUT: Final = frozenset({"collision", "record", "records", "dynamics", "effort", "velocity", "safety_controller"})
 _SHAPES: Final = frozenset({"visual", "geom"})
-_FREE: Final = frozenset({"effort", "velocity", "damping", "frictionloss", "actuatorfrcrange", "material", "rgba", "mesh", "filename"})
+_FREE: Final = frozenset({"effort", "velocity", "damping", "frictionloss", "actuatorfrcrange", "material", "rgba"})
+_NAMES: Final = frozenset({"mesh", "filename"})  # attributes that name a file; in SDFormat, the text of <uri> does
+_SHOWING: Final = frozenset({"mesh", "geom"})  # elements that show the mesh which they name
 _RELATIVE, _ABSOLUTE = 1e-6, 1e-9  # m, kg, rad; formats are written with full digits
 
 
-def describes(own: Assembly, elements: Iterable[Any], rewritten: Rewritten, *, shapes: bool = True) -> bool:
+def describes(own: Assembly, elements: Iterable[Any], digests: Digests, rewritten: Rewritten, *, shapes: bool = True) -> bool:
     """Return whether an assembly that records gave is what the elements of its file state.
 
     Args:
         own: The assembly.
         elements: The elements of the file.
+        digests: Looks up the meshes of the file.
         rewritten: Writes the assembly again.
         shapes: Whether visual shapes are compared; not if their meshes are missing.
     """
     left_out = _LEFT_OUT if shapes else _LEFT_OUT | _SHAPES
-    stated = _skeleton(elements, left_out)
+    stated = _skeleton(elements, left_out, digests)
+    if shapes and not all(map(_shows_its_solid, own.parts.values())):
+        return False
     try:
-        return any(_equal(stated, _skeleton(again, left_out)) for again in rewritten(own))
+        return any(_equal(stated, _skeleton(again, left_out, meshes.get)) for again, meshes in rewritten(own))
     except ArticadError:  # it cannot be written: then nobody wrote it from these records
         return False
 
 
-Row = tuple[str, Mapping[str, str], str]
-"""Tag, attributes and text of an element."""
+def _shows_its_solid(part: Part) -> bool:
+    """Return whether the solid that checks use is one of the shapes that other programs show."""
+    return part.solid is None or not part.visuals or part.solid.mesh.digest in {shape.mesh.digest for shape in part.visuals}
 
 
-def _skeleton(elements: Iterable[Any], left_out: frozenset[str]) -> list[Row]:
+Row = tuple[str, Mapping[str, str | None], str | None]
+"""Tag, attributes and text of an element; for the name of a mesh its digest."""
+
+
+def _skeleton(elements: Iterable[Any], left_out: frozenset[str], digests: Digests) -> list[Row]:
     """Return the elements that are compared, in order."""
     rows: list[Row] = []
     waiting = list(elements)[::-1]
@@ -57,10 +72,16 @@ def _skeleton(elements: Iterable[Any], left_out: frozenset[str]) -> list[Row]:
         tag = etree.QName(element).localname if isinstance(element.tag, str) else "collision"  # comments too
         if tag in left_out or (tag == "geom" and element.get("class") == "collision"):
             continue
-        attributes = {name: value for name, value in element.attrib.items() if name not in _FREE}
-        rows.append((tag, attributes, "" if tag == "uri" else (element.text or "").strip()))
+        shown = digests if tag in _SHOWING or (tag == "uri" and element.getparent().tag in _SHOWING) else _any_file
+        attributes = {name: shown(value) if name in _NAMES else value for name, value in element.attrib.items() if name not in _FREE}
+        text = (element.text or "").strip()
+        rows.append((tag, attributes, shown(text) if tag == "uri" else text))
         waiting += element[::-1]
     return rows
+
+
+def _any_file(_: str) -> None:
+    """Return that a file, such as a texture, is not compared."""
 
 
 def names_its_meshes(record: Mapping[str, Any], elements: Iterable[Any]) -> bool:
@@ -98,9 +119,9 @@ def _equal(stated: Sequence[Row], again: Sequence[Row]) -> bool:
     )
 
 
-def _alike(one: str, other: str) -> bool:
-    """Return whether two texts are equal, or rows of numbers that differ by rounding."""
-    if one == other:
+def _alike(one: str | None, other: str | None) -> bool:
+    """Return whether two texts are equal, or rows of numbers that differ by rounding; a mesh that is not there is like any other."""
+    if one is None or other is None or one == other:
         return True
     words, others = one.split(), other.split()
     if len(words) != len(others):

@@ -15,12 +15,13 @@ from lxml import etree
 from articad.arrays import FloatArray
 from articad.assembly import Assembly, Kept
 from articad.connectors.se3 import SE3
-from articad.export.mjcf import rewritten
+from articad.export.mjcf import mechanism_elements, rewritten
 from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
 from articad.geometry.shapes import box, capsule, cylinder, sphere
+from articad.importers.described import Digests
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.mjcf_carried import Carrier
 from articad.importers.mjcf_compiled import Compiled, compiled_mjcf
@@ -66,8 +67,9 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     if document.tag != "mujoco":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <mujoco>.")
     texts = [text.get("data", "") for text in document.iterfind("custom/text") if text.get("name", "").startswith(_RECORD_PREFIX)]
+    written = [*document.iterfind("worldbody"), *document.iterfind("equality")]
     own, edited = unedited(
-        texts if metadata else (), [*document.iterfind("worldbody"), *document.iterfind("equality")], folder, path, rewritten
+        texts if metadata else (), written, folder, path, mechanism_elements(document), rewritten, _digests(document, folder)
     )
     if own is not None:
         return own
@@ -81,6 +83,20 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
         model.findings.append(Finding(code="W_IMPORT_MUJOCO", where=path.name, message=f"MuJoCo warns: {text}", hint=hint))
     require_links(model, path)
     return assemble(fused(model) if fuse else with_chains_named(model), path)
+
+
+def _digests(document: Any, folder: Folder) -> Digests:
+    """Return a function that looks up the meshes of assets by name, "" for one that is not in mm or is moved: articad writes none."""
+    assets = {asset.get("name"): asset for asset in document.iterfind("asset/mesh")}
+
+    def digest(name: str) -> str | None:
+        asset = assets.get(name)
+        if asset is None or not set(asset.attrib) <= {"name", "file", "scale", "inertia"}:
+            return ""
+        scale = (asset.get("scale") or "1 1 1").split()
+        return folder.digest(asset.get("file", "")) if scale == ["0.001"] * 3 else ""
+
+    return digest
 
 
 class _Reader:

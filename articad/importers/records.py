@@ -21,7 +21,7 @@ from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Primitive, Shape, Solid
-from articad.importers.described import Rewritten, describes, names_its_meshes
+from articad.importers.described import Digests, Rewritten, describes, names_its_meshes
 from articad.importers.reading import LARGEST_MM, Folder, unreadable
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
@@ -71,7 +71,13 @@ def stale(records: list[Record], elements: Iterable[Any], path: Path) -> list[Fi
 
 
 def unedited(
-    texts: Iterable[str], elements: Iterable[Any], folder: Folder, path: Path, rewritten: Rewritten
+    texts: Iterable[str],
+    elements: Iterable[Any],
+    folder: Folder,
+    path: Path,
+    stated: Iterable[Any],
+    rewritten: Rewritten,
+    digests: Digests | None = None,
 ) -> tuple[Assembly | None, list[Finding]]:
     """Return the assembly that a file's records describe; None if it has none, or with a finding if they do not describe the file.
 
@@ -80,7 +86,9 @@ def unedited(
         elements: The elements that tell an edit.
         folder: For the meshes.
         path: The file.
-        rewritten: Writes the assembly again; yields its elements.
+        stated: The elements that state the mechanism; they are compared with those that the records give.
+        rewritten: Writes the assembly again; yields these elements.
+        digests: Looks up the meshes that they name; without it, the names are those of files.
 
     Raises:
         ReadError: If records are missing, or do not have the form that articad writes.
@@ -92,7 +100,7 @@ def unedited(
         return None, edited
     own = assembly_of(records, folder, path)
     meshes = all(names_its_meshes(record, elements) for record in records if record["kind"] == "part")
-    if meshes and describes(own, elements, rewritten, shapes=not folder.findings):
+    if meshes and describes(own, stated, digests or folder.digest, rewritten, shapes=not folder.findings):
         return own, []
     message = f"The articad records in {path.name} do not describe its own elements, so it is read like any other file, without them."
     hint = "Export it again from its plan or run; if somebody else gave you the file, do not trust its records."

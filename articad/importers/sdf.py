@@ -15,7 +15,7 @@ from articad.arrays import FloatArray
 from articad.assembly import Assembly, Kept
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError, ReadError
-from articad.export.sdf import rewritten
+from articad.export.sdf import mechanism_elements, rewritten
 from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
@@ -60,9 +60,8 @@ def read_sdf(path: str | Path, *, root: str | Path | None = None, metadata: bool
     folder = Folder.of(path, None if root is None else Path(root))
     document = _document(path)
     texts = [element.text or "" for element in document.iterfind("model/{*}records/{*}record")]
-    own, edited = unedited(
-        texts if metadata else (), [*document.iterfind("model/link"), *document.iterfind("model/joint")], folder, path, rewritten
-    )
+    written = [*document.iterfind("model/link"), *document.iterfind("model/joint")]
+    own, edited = unedited(texts if metadata else (), written, folder, path, mechanism_elements(document), rewritten)
     if own is not None:
         return own
     model = _Reader(folder, path).model(document)

@@ -16,7 +16,7 @@ from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError, ReadError
-from articad.export.urdf import rewritten
+from articad.export.urdf import mechanism_elements, rewritten
 from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
@@ -67,7 +67,8 @@ def read_urdf(
     if document.tag != "robot":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <robot>.")
     texts = [element.text or "" for element in document.iterfind("articad")]
-    own, edited = unedited(texts if metadata else (), [*document.iterfind("link"), *document.iterfind("joint")], folder, path, rewritten)
+    written = mechanism_elements(document)
+    own, edited = unedited(texts if metadata else (), written, folder, path, written, rewritten)
     if own is not None:
         if beside is None:
             return own

@@ -17,6 +17,8 @@ from articad.errors import ExportError
 from articad.export import mjcf, sdf, urdf
 from articad.export.fingerprint import fingerprint
 from articad.formats import NAMED, read
+from articad.geometry.mesh import TriMesh
+from articad.geometry.mesh_files import read_mesh, write_stl
 from articad.importers.described import describes
 from tests.assemblies import all_joint_kinds, four_bar, geared_pair, random_tree, rigid_ring, walker
 from tests.chains import chain
@@ -96,7 +98,7 @@ def test_each_number_of_a_mechanism_is_compared(form: str, tmp_path: Path) -> No
         root = etree.fromstring(before)
         element, name = list(numbers(root, form))[place]
         change(element, name, changed(element.get(name) if name else element.text))
-        assert not describes(own, elements(root, form), REWRITTEN[form]), (etree.tostring(element), name)
+        assert not describes(own, elements(root, form), lambda _: None, REWRITTEN[form]), (etree.tostring(element), name)
 
 
 @pytest.mark.parametrize("form", FORMATS)
@@ -131,6 +133,16 @@ def test_what_options_change_is_described(options: dict[str, Any], made: list[As
 
 
 @pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("options", [{"meshes": "obj"}, {"collision": "hull"}, {"actuators": "position"}, {"actuators": "motor"}], ids=str)
+def test_meshes_hulls_and_actuators_are_described(options: dict[str, Any], form: str, tmp_path: Path) -> None:
+    if "actuators" in options and form != "mjcf":
+        options = {}
+    for number, assembly in enumerate([geared_pair(), four_bar((-0.2, 0.2))]):
+        path = Path(NAMED[form].write(assembly, **options).write(tmp_path / str(number))[0])
+        assert "W_IMPORT_STALE" not in codes(path), assembly.name
+
+
+@pytest.mark.parametrize("form", FORMATS)
 def test_every_kind_of_joint_loop_and_coupling_is_described(form: str, made: list[Assembly], tmp_path: Path) -> None:
     for number, assembly in enumerate(made):
         assert "W_IMPORT_STALE" not in codes(written(assembly, form, tmp_path / str(number))), assembly.name
@@ -145,4 +157,42 @@ def test_records_name_the_meshes_that_links_show(form: str, tmp_path: Path) -> N
     text = path.read_text()
     path.write_text(text.replace(f'"file": "meshes/{shown.name}"', '"file": "meshes/other.stl"'))
     assert path.read_text() != text
+    assert "W_IMPORT_STALE" in codes(path)
+
+
+def small(path: Path) -> None:
+    """Write a mesh beside each one of a file: that of its first part at a hundredth of its size."""
+    mesh = read_mesh(min(path.parent.glob("meshes/*.stl")))
+    for file in [*path.parent.glob("meshes/*.stl"), path.parent / "small.stl"]:
+        other = path.parent / "other" / file.name
+        other.parent.mkdir(exist_ok=True)
+        other.write_bytes(write_stl(TriMesh(mesh.vertices * 0.01, mesh.triangles)))
+
+
+QUOTE = '(?:"|&quot;)'
+FORGED = {
+    "the solid is another mesh": (rf"({QUOTE}solid{QUOTE}: {{{QUOTE}file{QUOTE}: {QUOTE})meshes/[^.]+", r"\g<1>other/small", ""),
+    "links show meshes of another folder": (r'( filename="|<uri>| file=")meshes/', r"\g<1>other/", ""),
+    "meshes are scaled": (r'scale="0.001 0.001 0.001"', 'scale="0.1 0.1 0.1"', "urdf mjcf"),
+    "a mesh is moved": (r' scale="0.001 0.001 0.001"', r'\g<0> refpos="0 0 1"', "mjcf"),
+    "joints have other defaults": ("<default>", '<default><joint pos="0 0 5"/>', "mjcf"),
+    "angles have another unit": ('angle="radian"', 'angle="degree"', "mjcf"),
+    "another file is included": ("<worldbody>", '<include file="more.xml"/><worldbody>', "mjcf"),
+    "there is one more model": (r"</model>", r'<model name="m"><link name="l"/></model></model>', "sdf"),
+    "the model is moved": (r"<model [^>]*>", r"\g<0><pose>0 0 1 0 0 0</pose>", "sdf"),
+}
+
+
+@pytest.mark.parametrize(
+    ("form", "forgery"), [(form, name) for name, row in FORGED.items() for form in FORMATS if form in (row[2] or form)]
+)
+def test_what_other_programs_see_is_compared(form: str, forgery: str, tmp_path: Path) -> None:
+    """What surrounds links and joints, and the contents of meshes, belong to the mechanism."""
+    path = written(chain(2), form, tmp_path)
+    small(path)
+    path.with_name("more.xml").write_text("<mujoco/>")
+    pattern, other, _ = FORGED[forgery]
+    text, count = re.subn(pattern, other, path.read_text())
+    assert count
+    path.write_bytes(forged(etree.fromstring(text.encode()), form))
     assert "W_IMPORT_STALE" in codes(path)
