@@ -368,7 +368,7 @@ the one that kinematics computes for it. `articad sim` requires 99 %.
   the 100 rad/s at which the judge stops. jack_scissor: the USD file stated no travel for its screw; Newton locks such degrees, and the judge starts that screw at 0
   instead of at rest. The export states the travel now; the answer shown is about the earlier file. NewtonMimicAPI cannot couple a screw's turn and travel. landing_gear_side:
   the judge's spring suits the jack's own 0.0102 kg, but the jack feels 7.86 kg through the linkage, and Newton closes loops softly. Driven by computed torque for
-  that mass, the jack comes to 57.5 % with Newton's loops, and to 100 % with loops as stiff as those of the MJCF (`solref` 0.004 s). USD cannot state that stiffness.
+  that mass, the jack comes to 57.5 % with Newton's loops, and to 100 % with loops as stiff as those of the MJCF (`solref` 0.004 s). The USD export states no stiffness of loops.
 - An empty cell, or a model that is not listed, was not judged. *(earlier)*: by an earlier version of the judge's program, or on an earlier export.
 - Drake and SAPIEN are not in the table: `pytest -m engines_all tests/export/test_elsewhere.py` loads URDFs of all kinds of joints in both, and MJCF and SDF in
   Drake, in an environment of their own, and compares the poses of all links.
