@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -47,7 +48,7 @@ def test_a_second_build_of_the_same_product_draws_nothing_and_has_the_same_pictu
     def refuse(*_: object, **__: object) -> launcher.Ended:
         raise AssertionError("a process was started")
 
-    monkeypatch.setattr(launcher, "run", refuse)
+    monkeypatch.setattr(drawing, "launcher", SimpleNamespace(run=refuse, Limits=launcher.Limits))  # simulators still have processes
 
     assert cli.main(["build", str(product), "--out", str(tmp_path / "second"), "--export", "urdf", "-q"]) == 0
 
@@ -61,7 +62,7 @@ def test_a_second_build_of_the_same_product_draws_nothing_and_has_the_same_pictu
 def test_a_drawing_process_that_crashes_takes_no_result_with_it(
     product: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], ended: launcher.Ended
 ) -> None:
-    monkeypatch.setattr(launcher, "run", lambda *_, **__: ended)
+    monkeypatch.setattr(drawing, "launcher", SimpleNamespace(run=lambda *_, **__: ended, Limits=launcher.Limits))
     monkeypatch.setattr(drawing, "_RECIPE", "another")  # nothing of it is in the cache
 
     assert cli.main(["build", str(product), "--out", str(tmp_path / "run"), "--export", "urdf"]) == 0

@@ -48,7 +48,8 @@ convert run/export/urdf/product.urdf other.xml
 convert foreign.xml foreign.urdf
 convert run/export/step/product.step step/part.urdf
 export run --to freecad --split --trees --drawings
-export run --to usd,sdf,glb,3mf,plan --ros robot
+export run --to usd,sdf,glb,3mf,plan
+export run --to urdf --ros robot
 pull run run/export/freecad/product.FCStd --out pulled
 install freecad --remove
 adopt run/export/mjcf/product.xml --out adopted --no-audit
@@ -110,14 +111,14 @@ def marks(folder: Path) -> str:
     return mark.read_text() if mark.exists() else ""
 
 
-ELSEWHERE = {"bench run": "generate", "bench judge": "generate", "bench faults": "build, check and edit"}
+ELSEWHERE = {"bench run": "generate", "bench judge": "generate", "bench faults": "build, check and edit", "bench cheats": "bench score"}
 """Actions that run what other lines run, and take minutes or a model."""
 HARMLESS = """
 --root --budget --no-engines --density --sandbox --out --jobs --memory --kernel --set --force --api-base --docs --no-look --strict
 --no-inspection --max-calls --max-tokens --max-cost --max-minutes --rounds --repairs --variant --model --vision-model --judge-model
 --embeddings --keep --tasks --some --kind --at-once --judge --refine --recorded --size --sheet --kerf --turn --purchased --epsilon
 --joints --pairs --no-pairs --script --fuse --no-build --srdf --keep-frames --image --part-image --review --ideas --pick --loops --collision
---actuators --process --next --port --dir --formats --export --views --parts --explode --engine --scheduler --seconds --meshes
+--actuators --process --case --repair --next --port --dir --formats --export --views --parts --explode --engine --scheduler --seconds --meshes
 """
 """Options that choose numbers, names, places or one of the ways that are tried without them; they start no code of their own."""
 

@@ -144,7 +144,7 @@ def test_its_commands_exist_with_their_flags(capsys: pytest.CaptureFixture[str])
 def test_its_tools_exist_with_their_arguments(tmp_path: Path) -> None:
     tools = {tool.name: set(tool.input_schema["properties"]) for tool in finish(make_server(tmp_path).list_tools())}
     calls = re.findall(r"`(\w+)\(([^`]*)\)`", skill().split("## The plan")[0])
-    assert len(tools) == 18
+    assert len(tools) == 19
     assert {name for name, _ in calls} <= set(tools)
     for name, arguments in calls:
         assert set(re.findall(r"(\w+)=", arguments)) <= tools[name]

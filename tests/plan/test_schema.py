@@ -158,7 +158,7 @@ numbers = st.one_of(
     st.integers(-(10**6), 10**6).map(float), st.floats(allow_nan=False, allow_infinity=False), st.sampled_from(["width / 2", "2 * pi"])
 )
 vectors = st.tuples(numbers, numbers, numbers)
-texts = st.text(max_size=30)
+texts = st.text(st.characters(exclude_categories=["Cc", "Cs"], include_characters="\t\n", exclude_characters="\ufffe\uffff"), max_size=30)
 poses = st.builds(Pose, at=vectors, about=vectors, axis=vectors, angle_deg=numbers)
 specs = st.builds(
     ConnectorSpec,
