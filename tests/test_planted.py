@@ -81,8 +81,8 @@ skill install
 doctor
 """
 RECORDED = Path(__file__).parent / "recordings" / "toy"
-LACKING = ("E_KERNEL_UNAVAILABLE kernels.freecad", "PyVista cannot draw here", "E_READ nowhere")
-"""What commands say where FreeCAD, the optional renderer or a data set is missing."""
+LACKING = ("E_KERNEL_UNAVAILABLE kernels.freecad", "PyVista cannot draw here", "E_READ")
+"""What commands say where FreeCAD, the optional renderer, or the file or case that a line names is missing."""
 WITH_A_MODEL = ("generate", "resume")
 SERVERS = ("watch", "mcp")
 
