@@ -190,7 +190,7 @@ def test_what_other_programs_see_is_compared(form: str, forgery: str, tmp_path: 
     """What surrounds links and joints, and the contents of meshes, belong to the mechanism."""
     path = written(chain(2), form, tmp_path)
     small(path)
-    path.with_name("more.xml").write_text("<mujoco/>")
+    path.with_name("more.xml").write_text('<mujoco><option gravity="0 0 -1"/></mujoco>')
     pattern, other, _ = FORGED[forgery]
     text, count = re.subn(pattern, other, path.read_text())
     assert count
