@@ -198,7 +198,7 @@ def closed(kind: Callable[[Attachment, Attachment], Joint], *, turned: bool = Fa
     return _closed_by(kind, parts, joints, end="end", turned=turned)
 
 
-def four_bar(limits: Any = "endless") -> Assembly:
+def four_bar(limits: Any = "endless", crank: Any = "endless") -> Assembly:
     """Links of 30, 90 and 70 mm over a span, hinged in a plane; it rests closed at a crank of 60°."""
     lengths = (("crank", 30), ("coupler", 90), ("rocker", 70))
     parts = [
@@ -206,7 +206,7 @@ def four_bar(limits: Any = "endless") -> Assembly:
         *(block(name, (size, 6, 4), root=frame(), tip=frame(at=(size, 0, 0))) for name, size in lengths),
     ]
     joints = [
-        declare.revolute("a", parts[0]["tip"], parts[1]["root"], limits="endless", rest=math.pi / 3, driver=True),
+        declare.revolute("a", parts[0]["tip"], parts[1]["root"], limits=crank, rest=math.pi / 3, driver=True),
         declare.revolute("b", parts[1]["tip"], parts[2]["root"], limits="endless", rest=-0.6),
         declare.revolute("c", parts[2]["tip"], parts[3]["root"], limits="endless", rest=-0.9),
     ]

@@ -84,7 +84,7 @@ def mend(
     Args:
         path: The file; it is not modified.
         out: Folder to write to.
-        density: Density of everything without mass [kg/m³]; without it no mass is computed.
+        density: Density of everything without mass [kg/m³]; without it no mass is computed, but inertias for stated masses are.
         collision: "pieces" replaces closed collision meshes that are not convex by convex pieces inside them.
         choices: Options for the audit of the result.
 
@@ -179,8 +179,6 @@ class _Mender:
 
     def _weigh(self) -> None:
         """Give mass and inertia to links with closed shapes: from the density, or from the stated mass if only the inertia is wrong."""
-        if self.density is None:
-            return
         moving = {name for group in self.declared.moving_groups for name in group}
         wrong = {
             name for check in masses.CHECKS for finding in check(self.declared) if finding.code in BAD_INERTIA for name in finding.parts
@@ -189,10 +187,10 @@ class _Mender:
         for link in self.declared.links:
             stated = None if link.inertial is None else link.inertial.mass
             needs = stated is None or stated < 0 or (stated == 0 and link.name in moving)
-            if not (needs or link.name in wrong) or (body := _body(link)) is None:
+            if not (self.density if needs else link.name in wrong) or (body := _body(link)) is None:
                 continue
-            mass = MassProperties.from_solid(*body.solid_integrals(), self.density)
-            if not needs and stated is not None:
+            mass = MassProperties.from_solid(*body.solid_integrals(), self.density or 1.0)
+            if not needs and stated is not None:  # only the shape counts
                 mass = mass.scaled(stated / mass.mass)
                 corrected.append(link.name)
             else:

@@ -44,7 +44,9 @@ def unknown_links(declared: Declared) -> Iterator[Finding]:
                     where=joint.where,
                     parts=(link,),
                     message=f"The {side} of joint {joint.name!r} is {link!r}, but no link has this name.{meant}",
-                    hint=f"Name one of the {len(declared.by_name)} links, or declare {link!r}.",
+                    hint=f"Name one of the {len(declared.by_name)} links, or add a link {link!r} and a joint that carries it."
+                    if side == "parent"
+                    else f"Name one of the {len(declared.by_name)} links, or add a link {link!r}.",
                 )
 
 
@@ -120,7 +122,7 @@ def circles(declared: Declared) -> Iterator[Finding]:
                 where=parents[link].where,
                 parts=tuple(circle),
                 message=f"The links {listed(circle)} form a cycle.",
-                hint="Remove one of the joints between them.",
+                hint=f"Let one of the joints between them, such as {parents[link].name!r}, start from a link outside the cycle.",
                 value=len(circle),
                 limit=0,
             )

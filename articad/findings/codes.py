@@ -726,12 +726,12 @@ CODES: dict[str, Code] = {
     "E_AUDIT_JOINT_TYPE": Code("audit", None, "A joint has a type that the format does not know.", "Use one of the format's types."),
     "E_AUDIT_TWO_PARENTS": Code("audit", None, "A link is the child of several joints.", "Keep one; closed loops need MJCF."),
     "E_AUDIT_ROOTS": Code("audit", None, "A file has no root link, or several.", "Connect every link to one root."),
-    "E_AUDIT_CIRCLE": Code("audit", None, "Links form a cycle.", "Remove one of the joints between them."),
+    "E_AUDIT_CIRCLE": Code("audit", None, "Links form a cycle.", "Let one of the joints between them start from a link outside the cycle."),
     "E_AUDIT_MIMIC": Code("audit", None, "A joint mimics a joint that does not exist or does not move.", "Name a joint that moves."),
     "W_AUDIT_NAME": Code("audit", None, "Names contain characters that ROS or USD do not accept.", "Use letters, digits and underscores."),
     "W_AUDIT_LONG_NAME": Code("audit", None, "The robot's name is a whole sentence.", "Give it a short name."),
     "E_AUDIT_NO_INERTIA": Code(
-        "audit", None, "A body that moves has a shape but no mass.", "Give it mass and inertia; `--fix` computes them."
+        "audit", None, "A body that moves has a shape but no mass.", "Give it mass and inertia; `--fix` with `--density` computes them."
     ),
     "E_AUDIT_MASSLESS": Code(
         "audit", None, "A link that carries a joint has neither mass nor shape.", "Give it a small mass, or make the chain one joint."
@@ -817,7 +817,9 @@ CODES: dict[str, Code] = {
     ),
     "E_AUDIT_NOT_SOLID": Code("audit", None, "A part of a STEP file is not a valid closed solid.", "Repair it in CAD."),
     "E_SIM_LOAD": Code("audit", None, "A simulator does not load the model.", "Audit the file: `articad audit`."),
-    "E_SIM_EXPLODES": Code("audit", None, "Numbers in a simulation grow without bound.", "Audit the file for overlap and inertias."),
+    "E_SIM_EXPLODES": Code(
+        "audit", None, "Numbers in a simulation grow without bound.", "Audit the file for overlap and inertias; use a smaller time step."
+    ),
     "E_SIM_UNSETTLED": Code("audit", None, "A model whose joints are held does not come to rest.", "Audit the file for overlap at rest."),
     "E_SIM_RANGE": Code("audit", None, "A joint does not reach 99 % of its range.", "Add clearance, or narrow the range."),
     "E_SIM_RESIDUAL": Code(
@@ -827,7 +829,7 @@ CODES: dict[str, Code] = {
         "audit",
         None,
         "A file leaves closed loops of its assembly open; their joints are not driven where bodies collide.",
-        "Simulate the MJCF, which closes them.",
+        "Simulate the MJCF in MuJoCo, which closes them.",
     ),
     "I_SIM_UNREAD": Code(
         "audit",
@@ -835,5 +837,7 @@ CODES: dict[str, Code] = {
         "A simulator does not read the inertia of a link from the file, so it was not tried there.",
         "Simulate a URDF of the model in that engine.",
     ),
-    "E_SIM_ENERGY": Code("audit", None, "Energy grows although nothing drives the model.", "Use a smaller time step; check inertias."),
+    "E_SIM_ENERGY": Code(
+        "audit", None, "Energy grows although nothing drives the model.", "Use a smaller time step; check inertias, springs and damping."
+    ),
 }

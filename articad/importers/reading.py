@@ -171,7 +171,7 @@ class Folder:
     def find(self, name: str) -> Path:
         """Return the file for a name: relative to the file or the root, `file://`, `package://name/...` or `model://name/...`.
 
-        A `package://` package is looked for in the folders from the file up to the root, then in the folders of `ROS_PACKAGE_PATH` and
+        A `package://` package is looked for in the folders from the file up to the root, in the root alone if it is not above the file, then in the folders of `ROS_PACKAGE_PATH` and
         `AMENT_PREFIX_PATH`; the file has to lie in the root, or in the package that the environment names.
 
         Raises:
@@ -202,7 +202,7 @@ class Folder:
         scheme, _, path = name.partition("://")
         if scheme in {"package", "model"}:
             package, _, rest = path.partition("/")
-            above = [folder for folder in (self.here, *self.here.parents) if folder.is_relative_to(self.root)]
+            above = [folder for folder in (self.here, *self.here.parents) if folder.is_relative_to(self.root)] or [self.root]
             stated = find_package(package, above) if scheme == "package" else None
             inside = [folder / rest for folder in above if folder.name == package]
             inside += [] if stated is None else [stated / rest]

@@ -189,7 +189,7 @@ def _findings(outcome: EngineOutcome) -> Iterator[Finding]:
             code="E_SIM_EXPLODES",
             where=outcome.engine,
             message=f"In {name} the simulation diverged: a joint reached {outcome.top_speed:.4g} rad/s or m/s.",
-            hint="Check for overlap at rest and for impossible inertias with `articad audit`.",
+            hint="Check for overlap at rest and for impossible inertias with `articad audit`; use a smaller time step.",
             value=outcome.top_speed,
         )
         return
@@ -226,14 +226,14 @@ def _findings(outcome: EngineOutcome) -> Iterator[Finding]:
             code="I_SIM_LOOPS_OPEN",
             where=outcome.engine,
             message=f"{outcome.open_loops} closed loops or couplings of the model are left out in {name}{told}.",
-            hint="Simulate the MJCF, which closes them.",
+            hint="Simulate the MJCF in MuJoCo, which closes them.",
         )
     if (outcome.energy_growth or 0.0) > GROWTH:
         yield Finding(
             code="E_SIM_ENERGY",
             where=outcome.engine,
             message=f"In {name}, after release, the model gains {100 * (outcome.energy_growth or 0.0):.4g} % of its largest kinetic energy.",
-            hint="Use a smaller time step, and check inertias and springs.",
+            hint="Use a smaller time step, and check inertias, springs and damping.",
             value=100 * (outcome.energy_growth or 0.0),
             limit=100 * GROWTH,
             unit="%",

@@ -83,9 +83,6 @@ def test_no_name_leads_out_of_a_package(tmp_path: Path, monkeypatch: pytest.Monk
     for name in ("package://other/../../secret.stl", "package://other/meshes/link.stl", "package://../secret.stl"):
         path = tmp_path / "r.urdf"
         path.write_text(ROBOT.format(name))
-        if name == "package://../secret.stl":
-            assert not read(path, root=tmp_path / "ws").parts["l"].visuals
-            continue
         with pytest.raises(ReadError) as refused:
             read(path, root=tmp_path / "ws")
         assert set(refused.value.findings.codes) == {"E_UNSAFE_PATH"}
