@@ -6,6 +6,7 @@ All measuring is done by `articad.interference`. This module chooses which shape
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import combinations, product
 
 import numpy as np
@@ -78,7 +79,15 @@ def contacts(
             prove_motion(case, found, certified)
     if case.shared:
         found.findings.append(shared_note(case.shared))
+    if declared.format != "plan":
+        found.findings = [_from_records(finding) if finding.code == "I_WAIVED" else finding for finding in found.findings]
     return found
+
+
+def _from_records(finding: Finding) -> Finding:
+    """Return the finding about a waiver with where it is from: in a file, nothing but the records of articad can hold one."""
+    said = " Only articad's records in the file say so; nothing else in it can be compared with them."
+    return replace(finding, message=finding.message + said, hint="Check the reason yourself if you do not know who wrote the file.")
 
 
 # ---------------------------------------------------------------------- choice of shapes

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from articad.arrays import FloatArray
 from articad.errors import InvalidSolidError
 from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Primitive
 
 _BOX_TRIANGLES = np.array(
     [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]],
@@ -80,6 +83,21 @@ def capsule(r: float, length: float, segments: int = 32) -> TriMesh:
     quarter = max(segments // 4, 1)
     polar = np.pi / 2 * np.arange(1, quarter + 1) / quarter
     return _round_ended(r, length, np.concatenate([polar, np.pi - polar[::-1]]), segments)
+
+
+def primitive_mesh(form: Primitive) -> TriMesh:
+    """Return the mesh of a primitive [mm], the same for every reader.
+
+    Raises:
+        InvalidSolidError: If a size is not a positive length.
+    """
+    if form.kind == "ellipsoid":
+        a, b, c = form.size
+        _require_positive(a=a, b=b, c=c)
+        ball = sphere(1.0)
+        return TriMesh(ball.vertices * (a, b, c), ball.triangles)
+    makers: dict[str, Callable[..., TriMesh]] = {"box": box, "sphere": sphere, "cylinder": cylinder, "capsule": capsule}
+    return makers[form.kind](*form.size)
 
 
 def _round_ended(r: float, length: float, polar: FloatArray, segments: int) -> TriMesh:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
 from copy import deepcopy
 from pathlib import Path
 from typing import Any, Final
@@ -20,8 +19,8 @@ from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
-from articad.geometry.shapes import box, capsule, cylinder, sphere
-from articad.importers.described import Digests
+from articad.geometry.shapes import primitive_mesh
+from articad.importers.described import OTHER, Meshes
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.mjcf_carried import Carrier
 from articad.importers.mjcf_compiled import Compiled, compiled_mjcf
@@ -69,7 +68,7 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     texts = [text.get("data", "") for text in document.iterfind("custom/text") if text.get("name", "").startswith(_RECORD_PREFIX)]
     written = [*document.iterfind("worldbody"), *document.iterfind("equality")]
     own, edited = unedited(
-        texts if metadata else (), written, folder, path, mechanism_elements(document), rewritten, _digests(document, folder)
+        texts if metadata else (), written, folder, path, mechanism_elements(document), rewritten, _meshes(document, folder)
     )
     if own is not None:
         return own
@@ -85,18 +84,18 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     return assemble(fused(model) if fuse else with_chains_named(model), path)
 
 
-def _digests(document: Any, folder: Folder) -> Digests:
-    """Return a function that looks up the meshes of assets by name, "" for one that is not in mm or is moved: articad writes none."""
+def _meshes(document: Any, folder: Folder) -> Meshes:
+    """Return a function that looks up the meshes of assets by name, `OTHER` for one that is not in mm or is moved: articad writes none."""
     assets = {asset.get("name"): asset for asset in document.iterfind("asset/mesh")}
 
-    def digest(name: str) -> str | None:
+    def mesh(name: str) -> TriMesh | None:
         asset = assets.get(name)
         if asset is None or not set(asset.attrib) <= {"name", "file", "scale", "inertia"}:
-            return ""
+            return OTHER
         scale = (asset.get("scale") or "1 1 1").split()
-        return folder.digest(asset.get("file", "")) if scale == ["0.001"] * 3 else ""
+        return folder.unscaled(asset.get("file", "")) if scale == ["0.001"] * 3 else OTHER
 
-    return digest
+    return mesh
 
 
 class _Reader:
@@ -232,16 +231,15 @@ class _Reader:
         m = self.m
         a, b, c = (float(size) * MM_PER_M for size in self.m.geom_size[geom])
         kind = int(self.m.geom_type[geom])
-        forms: dict[int, tuple[Callable[[], TriMesh], Primitive]] = {
-            int(m.mjGEOM_BOX): (lambda: box(2 * a, 2 * b, 2 * c), Primitive("box", (2 * a, 2 * b, 2 * c))),
-            int(m.mjGEOM_SPHERE): (lambda: sphere(a), Primitive("sphere", (a,))),
-            int(m.mjGEOM_CYLINDER): (lambda: cylinder(a, 2 * b), Primitive("cylinder", (a, 2 * b))),
-            int(m.mjGEOM_CAPSULE): (lambda: capsule(a, 2 * b), Primitive("capsule", (a, 2 * b))),
-            int(m.mjGEOM_ELLIPSOID): (lambda: _ellipsoid(a, b, c), Primitive("ellipsoid", (a, b, c))),
+        forms = {
+            int(m.mjGEOM_BOX): Primitive("box", (2 * a, 2 * b, 2 * c)),
+            int(m.mjGEOM_SPHERE): Primitive("sphere", (a,)),
+            int(m.mjGEOM_CYLINDER): Primitive("cylinder", (a, 2 * b)),
+            int(m.mjGEOM_CAPSULE): Primitive("capsule", (a, 2 * b)),
+            int(m.mjGEOM_ELLIPSOID): Primitive("ellipsoid", (a, b, c)),
         }
         if kind in forms:
-            make, form = forms[kind]
-            return make(), form
+            return primitive_mesh(forms[kind]), forms[kind]
         if kind != m.mjGEOM_MESH:
             return None, None
         mesh = self.m.geom_dataid[geom]
@@ -402,11 +400,6 @@ def _stated_keys(document: Any) -> int:
 def _number_of(compiled: Compiled, count: str) -> int:
     """Return a count of a compiled model; before MuJoCo 4 every actuator had one control."""
     return int(getattr(compiled, count, 0) or (compiled.nu if count == "nactuator" else 0))
-
-
-def _ellipsoid(a: float, b: float, c: float) -> TriMesh:
-    ball = sphere(1.0)
-    return TriMesh(ball.vertices * [a, b, c], ball.triangles)
 
 
 def _pose(position: FloatArray, wxyz: FloatArray) -> SE3:

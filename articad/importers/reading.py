@@ -240,8 +240,8 @@ class Folder:
             return stretched if scale[0] * scale[1] * scale[2] > 0 else stretched.flipped()
         return mesh
 
-    def digest(self, name: str) -> str | None:
-        """Return the digest of a mesh in the unit of its file, None if it cannot be read.
+    def unscaled(self, name: str) -> TriMesh | None:
+        """Return a mesh in the unit of its file, None if it cannot be read.
 
         Raises:
             ReadError: E_UNSAFE_PATH if its name leads out.
@@ -249,7 +249,7 @@ class Folder:
         count = len(self.findings)
         mesh = self.mesh(name, (1.0, 1.0, 1.0), "")
         del self.findings[count:]
-        return None if mesh is None else mesh.digest
+        return mesh
 
     def keep_colors(self, name: str, where: str) -> None:
         """Record that the colours of a mesh file are lost, if it states any: an assembly has one colour for a shape."""

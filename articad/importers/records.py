@@ -21,7 +21,8 @@ from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Primitive, Shape, Solid
-from articad.importers.described import Digests, Rewritten, describes, names_its_meshes
+from articad.geometry.shapes import primitive_mesh
+from articad.importers.described import Meshes, Rewritten, describes, names_its_meshes
 from articad.importers.reading import LARGEST_MM, Folder, unreadable
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
@@ -77,7 +78,7 @@ def unedited(
     path: Path,
     stated: Iterable[Any],
     rewritten: Rewritten,
-    digests: Digests | None = None,
+    meshes: Meshes | None = None,
 ) -> tuple[Assembly | None, list[Finding]]:
     """Return the assembly that a file's records describe; None if it has none, or with a finding if they do not describe the file.
 
@@ -88,7 +89,7 @@ def unedited(
         path: The file.
         stated: The elements that state the mechanism; they are compared with those that the records give.
         rewritten: Writes the assembly again; yields these elements.
-        digests: Looks up the meshes that they name; without it, the names are those of files.
+        meshes: Looks up the meshes that they name; without it, the names are those of files.
 
     Raises:
         ReadError: If records are missing, or do not have the form that articad writes.
@@ -99,8 +100,9 @@ def unedited(
     if edited := stale(records, elements, path):
         return None, edited
     own = assembly_of(records, folder, path)
-    meshes = all(names_its_meshes(record, elements) for record in records if record["kind"] == "part")
-    if meshes and describes(own, stated, digests or folder.digest, rewritten, shapes=not folder.findings):
+    named = all(names_its_meshes(record, elements) for record in records if record["kind"] == "part")
+    incomplete = {finding.where.removeprefix("parts.") for finding in folder.findings}
+    if named and describes(own, stated, meshes or folder.unscaled, rewritten, incomplete=incomplete):
         return own, []
     message = f"The articad records in {path.name} do not describe its own elements, so it is read like any other file, without them."
     hint = "Export it again from its plan or run; if somebody else gave you the file, do not trust its records."
@@ -158,12 +160,9 @@ def _part(record: Record, folder: Folder) -> Part:
         return None if file is None else folder.mesh(file, _UNIT, where)
 
     def shapes(rows: list[Record]) -> tuple[Shape, ...]:
-        found = ((row, mesh(row["file"])) for row in rows)
-        return tuple(
-            Shape(body, _frame(row["frame"]), row["color"], row["name"], _primitive(row.get("primitive")))
-            for row, body in found
-            if body is not None
-        )
+        formed = ((row, _primitive(row.get("primitive"))) for row in rows)
+        found = ((row, form, mesh(row["file"]) if form is None else primitive_mesh(form)) for row, form in formed)
+        return tuple(Shape(body, _frame(row["frame"]), row["color"], row["name"], form) for row, form, body in found if body is not None)
 
     return Part(
         record["name"],
@@ -180,7 +179,10 @@ def _part(record: Record, folder: Folder) -> Part:
 def _primitive(record: list[Any] | None) -> Primitive | None:
     if record is None or record[0] not in PRIMITIVES:
         return None
-    return Primitive(record[0], tuple(float(size) for size in record[1:]))
+    size = tuple(float(size) for size in record[1:])
+    if max(size) > LARGEST_MM:
+        raise ValueError("the size of a shape is not plausible")
+    return Primitive(record[0], size)
 
 
 def _solid(record: Record | None, mesh: Any) -> Solid | None:

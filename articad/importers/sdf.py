@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
@@ -20,7 +20,7 @@ from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
-from articad.geometry.shapes import box, capsule, cylinder, sphere
+from articad.geometry.shapes import primitive_mesh
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
@@ -315,7 +315,7 @@ class _Reader:
 
         if kind in _FORMS:
             form = Primitive(kind, tuple(value for tag, count, usual in _FORMS[kind] for value in size(tag, count, usual)))
-            return _mesh_of(form), form
+            return primitive_mesh(form), form
         if kind == "mesh" and shape.find("submesh") is None:
             x, y, z = size("scale", 3, 1.0)
             return self._beside_file(scope).mesh((shape.findtext("uri") or "").strip(), (x, y, z), where), None
@@ -536,14 +536,6 @@ def _value_of(element: Any) -> float:
 
 
 _OF_INCLUDE: Final = frozenset({"uri", "name", "pose", "static", "placement_frame"})
-
-
-def _mesh_of(form: Primitive) -> TriMesh:
-    makers: dict[str, Callable[..., TriMesh]] = {"box": box, "sphere": sphere, "cylinder": cylinder, "capsule": capsule}
-    if form.kind != "ellipsoid":
-        return makers[form.kind](*form.size)
-    ball = sphere(1.0)
-    return TriMesh(ball.vertices * form.size, ball.triangles)
 
 
 def _flag(element: Any, tag: str) -> bool:

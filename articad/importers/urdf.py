@@ -21,8 +21,7 @@ from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
-from articad.geometry.shapes import box, cylinder, sphere
-from articad.geometry.shapes import capsule as capsule_mesh
+from articad.geometry.shapes import primitive_mesh
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MAX_LINKS, MAX_SHAPES, MM_PER_M, Folder, color_text, parse_xml, read_xml, unreadable
@@ -360,18 +359,16 @@ def _shapes(rows: Any, colors: dict[str, str], folder: Folder, where: str, *, se
 
 def _mesh(geometry: Any, folder: Folder, where: str, *, capsule: bool) -> tuple[TriMesh | None, Primitive | None]:
     """Return a shape's mesh, and the primitive that it represents."""
+    form: Primitive | None = None
     if geometry.box is not None:
         form = Primitive("box", tuple(float(size) * MM_PER_M for size in geometry.box.size))
-        x, y, z = form.size
-        return box(x, y, z), form
-    if geometry.cylinder is not None:
+    elif geometry.cylinder is not None:
         sizes = (float(geometry.cylinder.radius) * MM_PER_M, float(geometry.cylinder.length) * MM_PER_M)
-        if capsule:
-            return capsule_mesh(*sizes), Primitive("capsule", sizes)
-        return cylinder(*sizes), Primitive("cylinder", sizes)
-    if geometry.sphere is not None:
+        form = Primitive("capsule" if capsule else "cylinder", sizes)
+    elif geometry.sphere is not None:
         form = Primitive("sphere", (float(geometry.sphere.radius) * MM_PER_M,))
-        return sphere(form.size[0]), form
+    if form is not None:
+        return primitive_mesh(form), form
     scale = np.ones(3) if geometry.mesh.scale is None else np.broadcast_to(geometry.mesh.scale, 3)
     x, y, z = (float(factor) * MM_PER_M for factor in scale)
     return folder.mesh(geometry.mesh.filename or "", (x, y, z), where), None

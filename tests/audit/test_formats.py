@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from articad.assembly import Assembly
 from articad.auditing.examine import AuditOptions, audit_assembly, audit_file
 from articad.auditing.many import audit_folder, models_below
+from articad.connectors.connector import Connector
+from articad.connectors.se3 import SE3
 from articad.export.freecad import write_freecad
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
+from articad.geometry.part import Part
+from articad.geometry.shapes import box
+from articad.kinematics import declare
+from articad.plan.resolve import Waiver
 from tests.assemblies import all_joint_kinds
 from tests.audit import defects
 
+PLACES = {"a": SE3.identity(), "b": SE3.trans(-10, 0, 0)}
 QUICK = AuditOptions(engines=False, budget=5.0)
 FULL = AuditOptions(budget=5.0)
 
@@ -248,3 +257,21 @@ def test_a_folder_gives_a_scoreboard(tmp_path: Path) -> None:
     assert [audit.ok for audit in board.audits] == [True, True, False, True]
     assert board.codes == [("E_AUDIT_NO_INERTIA", 1, 1)]
     assert board.to_json()["schema"] == "articad.scoreboard/1"
+
+
+@pytest.mark.parametrize("write", [write_urdf, write_mjcf])
+def test_an_audit_of_a_file_states_that_only_records_waive_an_overlap(write: Any, tmp_path: Path) -> None:
+    parts = [
+        Part.from_mesh(name, box(20, 20, 20), density=1000.0, connectors={"o": Connector("o", place)}) for name, place in PLACES.items()
+    ]
+    joint = declare.fixed("held", parts[1]["o"], parts[0]["o"])
+    waived = Assembly.from_parts("waived", parts=parts, joints=[joint], ground="a", waivers=[Waiver(("a", "b"), 12.0, "pressed")])
+
+    for folder, assembly in (("waived", waived), ("not", replace(waived, waivers=()))):
+        found = audit_file(write(assembly).write(tmp_path / folder)[0], QUICK).findings
+        assert bool(found.of("E_STATIC_OVERLAP")) == (folder == "not")
+        if folder == "waived":
+            (told,) = found.of("I_WAIVED")
+            assert "pressed" in told.message
+            assert "only" in told.message.lower()
+            assert "records" in told.message
