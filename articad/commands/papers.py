@@ -13,7 +13,10 @@ from articad.commands.options import SANDBOX, amount, names
 from articad.commands.steps import loaded
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     from articad.commands.terminal import Report, Terminal
+    from articad.papers.sheet import DrawingSheet
 
 BILLS: Final = ("csv", "json", "xlsx")
 DRAWINGS: Final = ("svg", "pdf", "dxf")
@@ -76,7 +79,6 @@ def _kerf(text: str) -> float:
     SANDBOX,
 )
 def _bom(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.export.bundle import Bundle
     from articad.export.names import file_name
     from articad.papers.bill import COLUMNS, bill_json, bill_xlsx, rows_of, written_csv
     from articad.papers.items import items_of
@@ -97,7 +99,6 @@ def _bom(options: argparse.Namespace, terminal: Terminal) -> Report:
             if name == "csv"
             else (json.dumps(report, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
         )
-    Bundle(files).write(options.out)
     terminal.table(
         ("item", "name", "quantity", "material", "kg", "kg in all", "x × y × z, mm"),
         [
@@ -121,9 +122,7 @@ def _bom(options: argparse.Namespace, terminal: Terminal) -> Report:
     )
     if options.cuts:
         terminal.say(text)
-    for name in files:
-        terminal.say(str(Path(options.out) / name))
-    return report | {"files": [str(Path(options.out) / name) for name in files]}
+    return report | {"files": _written(files, options, terminal)}
 
 
 @command(
@@ -139,37 +138,31 @@ def _bom(options: argparse.Namespace, terminal: Terminal) -> Report:
 )
 def _drawing(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands.steps import sandbox_level
+    from articad.export.names import file_name
     from articad.papers.drawing import drawings_of
     from articad.papers.sheet import A3, A4
     from articad.papers.writers import require_pdf, written_dxf, written_pdf, written_svg
-    from articad.runs.run import write_atomically
 
     if "pdf" in options.drawings:
         require_pdf()
     assembly = loaded(options.target, options, terminal)
     size = {"A4": A4, "A3": A3, None: None}[options.size]
-    with terminal.progress("Drawing") as tell:
-        sheets = []
-        for sheet in drawings_of(assembly, options.part, purchased=options.purchased, size=size, sandbox=sandbox_level(options)):
-            sheets.append(sheet)
-            tell(sheet.name, "done")
+    sheets = _drawn(drawings_of(assembly, options.part, purchased=options.purchased, size=size, sandbox=sandbox_level(options)), terminal)
+    stem = file_name(assembly.name)
     files: dict[str, bytes] = {}
     for sheet in sheets:
-        name = f"{assembly.name}_{'assembly' if sheet.part is None else sheet.part}"
+        name = f"{stem}_{file_name(sheet.part or 'assembly')}"
         if "svg" in options.drawings:
             files[f"{name}.svg"] = written_svg(sheet)
         if "dxf" in options.drawings:
             files[f"{name}.dxf"] = written_dxf(sheet)
     if "pdf" in options.drawings:
-        files[f"{assembly.name}{'' if options.part is None else f'_{options.part}'}_drawings.pdf"] = written_pdf(sheets, assembly.name)
-    for name, content in files.items():
-        write_atomically(Path(options.out) / name, content)
-        terminal.say(str(Path(options.out) / name))
+        files[f"{stem}{'' if options.part is None else f'_{file_name(options.part)}'}_drawings.pdf"] = written_pdf(sheets, assembly.name)
     return {
         "schema": "articad.drawings/1",
         "ok": True,
         "sheets": [sheet.told for sheet in sheets],
-        "files": [str(Path(options.out) / name) for name in files],
+        "files": _written(files, options, terminal),
         "findings": [],
     }
 
@@ -186,7 +179,6 @@ def _drawing(options: argparse.Namespace, terminal: Terminal) -> Report:
 )
 def _manual(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
-    from articad.export.bundle import Bundle
     from articad.export.names import file_name
     from articad.papers.items import items_of
     from articad.papers.manual import manual_of
@@ -200,32 +192,45 @@ def _manual(options: argparse.Namespace, terminal: Terminal) -> Report:
         order = assembly.assembly_order(options.fasten)
     report = order.to_json()
     stem = file_name(assembly.name)  # a file of somebody else may give any name
-    sheets = []
+    sheets = _drawn(manual_of(assembly, order, items), terminal) if {"pdf", "svg"} & set(options.manuals) else []
     files: dict[str, bytes] = {}
-    if {"pdf", "svg"} & set(options.manuals):
-        with terminal.progress("Drawing") as tell:
-            for sheet in manual_of(assembly, order, items):
-                sheets.append(sheet)
-                tell(sheet.name, "done")
     if "pdf" in options.manuals:
         files[f"{stem}_manual.pdf"] = written_pdf(sheets, f"{assembly.name}: assembly manual")
     if "svg" in options.manuals:
         files |= {f"{stem}_manual_{number:02}.svg": written_svg(sheet) for number, sheet in enumerate(sheets, start=1)}
     if "html" in options.manuals:
         files[f"{stem}_manual.html"] = _played(options.target, assembly, report).encode()
-    Bundle(files).write(options.out)
     summaries.print_order(report, terminal)
     summaries.print_findings(report["findings"], terminal)
-    for name in files:
-        terminal.say(str(Path(options.out) / name))
     return {
         "schema": "articad.manual/1",
         "ok": order.ok,
         "pages": [sheet.told for sheet in sheets],
         "order": report,
-        "files": [str(Path(options.out) / name) for name in files],
+        "files": _written(files, options, terminal),
         "findings": report["findings"],
     }
+
+
+def _drawn(sheets: Iterable[DrawingSheet], terminal: Terminal) -> list[DrawingSheet]:
+    """Return sheets, and tell of each when it is drawn."""
+    drawn = []
+    with terminal.progress("Drawing") as tell:
+        for sheet in sheets:
+            drawn.append(sheet)
+            tell(sheet.name, "done")
+    return drawn
+
+
+def _written(files: Mapping[str, bytes], options: argparse.Namespace, terminal: Terminal) -> list[str]:
+    """Write the files of a command, say their paths, and return these."""
+    from articad.export.bundle import Bundle
+
+    Bundle(files).write(options.out)
+    paths = [str(Path(options.out) / name) for name in files]
+    for path in paths:
+        terminal.say(path)
+    return paths
 
 
 def _played(target: str, assembly: Any, order: Report) -> str:

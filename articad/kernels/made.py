@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from types import SimpleNamespace
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 THROUGH: Final = 1e4  # mm to both sides of the connector
 """Half the length of a cutter that goes through the whole part."""
@@ -41,31 +41,44 @@ def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
     return shape, part.connectors
 
 
+class _Ends(NamedTuple):
+    """The names of the dimensions that make one side of a joint, each after `<connector>_`."""
+
+    length: str
+    rod: str
+    bar: str
+    ball: str
+
+
+_INNER: Final = _Ends("length", "pin", "bar", "ball")
+_OUTER: Final = _Ends("depth", "bore", "slot", "socket")
+
+
 def _inner(cad: Any, sizes: Any, name: str) -> Iterator[Any]:
     """Yield what the joint at a connector adds to the part, in the connector's frame."""
-    length = sizes.get(f"{name}_length")
-    if f"{name}_span" in sizes:
+    if f"{name}_span" in sizes:  # the pin of a fork
         yield cad.Cylinder(sizes[f"{name}_pin"] / 2, sizes[f"{name}_span"])
-    elif f"{name}_pin" in sizes:
-        yield _rod(cad, sizes[f"{name}_pin"], length)
-    if f"{name}_bar_x" in sizes:
-        yield _bar(cad, sizes[f"{name}_bar_x"], sizes[f"{name}_bar_y"], length)
-    if f"{name}_ball" in sizes:
-        yield cad.Sphere(sizes[f"{name}_ball"] / 2)
+        sizes = {key: value for key, value in sizes.items() if key != f"{name}_pin"}
+    yield from _bodies(cad, sizes, name, _INNER)
 
 
 def _outer(cad: Any, sizes: Any, name: str) -> Iterator[Any]:
     """Yield what the joint at a connector cuts from the part, in the connector's frame."""
-    depth = sizes.get(f"{name}_depth")
     if f"{name}_groove" in sizes:
         ring = cad.Cylinder(sizes[f"{name}_shaft"] / 2 + BEYOND, sizes[f"{name}_width"])
         yield ring - cad.Cylinder(sizes[f"{name}_groove"] / 2, 2 * sizes[f"{name}_width"])
-    if f"{name}_bore" in sizes:
-        yield _rod(cad, sizes[f"{name}_bore"], depth)
-    if f"{name}_slot_x" in sizes:
-        yield _bar(cad, sizes[f"{name}_slot_x"], sizes[f"{name}_slot_y"], depth)
-    if f"{name}_socket" in sizes:
-        yield cad.Sphere(sizes[f"{name}_socket"] / 2)
+    yield from _bodies(cad, sizes, name, _OUTER)
+
+
+def _bodies(cad: Any, sizes: Any, name: str, ends: _Ends) -> Iterator[Any]:
+    """Yield the rod, the bar and the ball of one side of a joint."""
+    length = sizes.get(f"{name}_{ends.length}")
+    if f"{name}_{ends.rod}" in sizes:
+        yield _rod(cad, sizes[f"{name}_{ends.rod}"], length)
+    if f"{name}_{ends.bar}_x" in sizes:
+        yield _bar(cad, sizes[f"{name}_{ends.bar}_x"], sizes[f"{name}_{ends.bar}_y"], length)
+    if f"{name}_{ends.ball}" in sizes:
+        yield cad.Sphere(sizes[f"{name}_{ends.ball}"] / 2)
 
 
 def _rod(cad: Any, diameter: Any, length: Any) -> Any:
