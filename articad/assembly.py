@@ -42,6 +42,7 @@ from articad.kinematics.motion import DrivenMotion, FeasibleRange
 from articad.kinematics.reach import Reach
 from articad.kinematics.solution import Solution
 from articad.plan.check import admitted
+from articad.plan.iso2768 import ToleranceClass
 from articad.plan.resolve import Fit, Material, ResolvedPart, ResolvedPlan, Waiver
 from articad.plan.schema import AssemblyPlan
 from articad.realisation.meshing import lost_meshes
@@ -609,6 +610,7 @@ class Assembly:
         pairs: bool = True,
         epsilon: float = DEFAULT_EPSILON_MM,
         budget: float = DEFAULT_BUDGET_S,
+        tolerance: ToleranceClass | None = None,
     ) -> Certificate:
         """Prove that no parts meet while joints move over their whole ranges; what the budget does not cover is "not checked".
 
@@ -620,6 +622,8 @@ class Assembly:
             epsilon: Distances up to this count as contact [mm].
             budget: Nominal seconds of work, the same amount on every machine; claims that are not proven by then are "not checked",
                 which is not ok. Each declared fit has the same budget again for itself.
+            tolerance: Class of ISO 2768-1, such as "m", within which the claims are to hold: for all parts whose surfaces lie anywhere
+                within their general tolerance and declared fits. None: for parts as they are modelled.
         """
         certificate = certify(
             self._meshes(),
@@ -631,6 +635,7 @@ class Assembly:
             deflection=self._deflections(),
             waivers=self.waivers,
             fits=self.fits,
+            tolerance=tolerance,
             check=not self.fits,
         )
         if not self.fits:

@@ -16,6 +16,7 @@ from articad.auditing.examine import AUDITED, AuditOptions, audit_assembly, audi
 from articad.auditing.report import Audit
 from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate
 from articad.disassembly.steps import AssemblyOrder
+from articad.plan.iso2768 import ToleranceClass
 from articad.plan.schema import AssemblyPlan
 from articad.runs.record import assembly_of
 from articad.runs.run import REQUEST_FILE, Run
@@ -84,6 +85,7 @@ def certify(
     pairs: bool = True,
     epsilon: float = DEFAULT_EPSILON_MM,
     budget: float = DEFAULT_BUDGET_S,
+    tolerance: ToleranceClass | None = None,
 ) -> Certificate:
     """Prove that no parts meet while joints move over their whole ranges; see `Assembly.certify`.
 
@@ -93,9 +95,10 @@ def certify(
         pairs: Whether joints are also moved two at a time.
         epsilon: Distances up to this count as contact [mm].
         budget: Nominal seconds of work, the same work on every machine.
+        tolerance: Class of ISO 2768-1, such as "m", within which the claims are to hold; None for parts as they are modelled.
     """
     assembly = target if isinstance(target, Assembly) else read(target)
-    return assembly.certify(joints, pairs=pairs, epsilon=epsilon, budget=budget)
+    return assembly.certify(joints, pairs=pairs, epsilon=epsilon, budget=budget, tolerance=tolerance)
 
 
 def assembly_order(target: str | Path | Assembly, fastenings: Mapping[str, Fastening] | None = None) -> AssemblyOrder:

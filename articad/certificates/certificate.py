@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from articad.certificates.clearing import MOST_PAIRS
 from articad.certificates.linkage import DriverTrack, LinkageProver
 from articad.certificates.proof import Proof, Prover, beyond
 from articad.certificates.ranges import driven_range, proven_freedoms
+from articad.certificates.tolerance import Tolerances, is_still
 from articad.certificates.verifier import PROOF, Checker, Refuted, covered, widened
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
@@ -44,6 +45,7 @@ from articad.interference.verdict import judge
 from articad.interference.work import WorkBudget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
+from articad.plan.iso2768 import ToleranceClass
 
 DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
@@ -100,6 +102,7 @@ class Certificate:
         spans: Proven bounds of each coordinate that follows [rad or mm].
         clearances: Smallest distance found of every two parts over the motion, the nearest first: sampled, not proven.
         follows: Tables of the followers of each driver of loops and couplings.
+        tolerances: The share of each part and the pairs that are not proven clear, if the claims were to hold within tolerance.
     """
 
     findings: Findings
@@ -121,6 +124,7 @@ class Certificate:
     spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     clearances: tuple[Clearance, ...] = ()
     follows: tuple[Following, ...] = ()
+    tolerances: Tolerances | None = None
 
     @property
     def ok(self) -> bool:
@@ -143,6 +147,7 @@ class Certificate:
             "linkage": sorted(self.constrained),
             "drivers": driver_names(self.mechanism, self.constrained),
             "together": self.together,
+            **({} if self.tolerances is None else {"tolerance": self.tolerances.to_json()}),
             "meshes": {name: {"sha256": mesh.digest, "deflection_mm": self.deflections[name]} for name, mesh in self.meshes.items()},
             "mechanism": mechanism_json(self.mechanism),
             "pairs": [pair.to_json() for pair in self.pairs],
@@ -219,6 +224,7 @@ def certify(
     deflection: Mapping[str, float] | float = 0.0,
     waivers: Sequence[WaiverLike] = (),
     fits: Mapping[str, FitLike] | None = None,
+    tolerance: ToleranceClass | None = None,
     check: bool = True,
 ) -> Certificate:
     """Prove that parts do not meet while joints move over their whole ranges, and have the proof checked by the independent checker.
@@ -237,10 +243,13 @@ def certify(
         deflection: Largest distance of meshes from their solids [mm], by part or the same for all.
         waivers: Overlaps that the plan allows.
         fits: By joint name.
+        tolerance: Class of ISO 2768-1 (f, m, c or v) within which the claims are to hold; None for parts as they are modelled. See
+            `articad.certificates.tolerance`.
         check: Whether to call the checker; callers that add claims call it afterwards (`Certificate.checked`).
     """
     scene = Scene.of(meshes, mechanism.joints, waivers=waivers, deflection=deflection, fits=fits)
-    found = _Certifying(scene, mechanism, joints, pairs, epsilon, WorkBudget(budget)).run()
+    tolerances = None if tolerance is None else Tolerances(scene, tolerance)
+    found = _Certifying(scene, mechanism, joints, pairs, epsilon, WorkBudget(budget), tolerances).run()
     return found.checked() if check else found
 
 
@@ -252,6 +261,7 @@ class _Certifying:
     together: bool
     epsilon: float
     budget: WorkBudget
+    tolerances: Tolerances | None = None
     findings: list[Finding] = field(default_factory=list)
     verdicts: list[PairCheck] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
@@ -281,11 +291,15 @@ class _Certifying:
             for b in solid[at + 1 :]:
                 if not self.scene.relations.rigid.together(a, b):
                     self._pair(found[b])
+                if self.tolerances is not None and is_still(found[b].joints):
+                    self._still(found[b], self.tolerances)
         # proofs that ran out of their first share of the budget get what is left
         for prover in self.later:
-            self._followed(prover, prover.prove())
+            self._followed(prover, self._within(prover, prover.prove()))
         self._report_left()
         self._report_unreached()
+        if self.tolerances is not None:
+            self.findings += self.tolerances.findings(self._sliding())
         # measured, not proven: least clearances, and collisions of three and more joints that the search finds
         motion = MotionSampler(self.scene, self.mechanism)
         clearances = least_clearances(motion, self.asked, together=self.together, quick=True)
@@ -309,6 +323,7 @@ class _Certifying:
             spans=self._spans(),
             clearances=clearances,
             follows=what_follows(motion, self.asked),
+            tolerances=self.tolerances,
         )
 
     def _look_at_all_at_once(self, motion: MotionSampler, clearances: Sequence[Clearance]) -> None:
@@ -443,7 +458,9 @@ class _Certifying:
             return False
         prover = Prover(self.scene, route, joints, epsilon=self.epsilon, budget=self.budget)
         proof = prover.prove(most=most, tentative=tentative)
-        if proof.is_complete:
+        wide = self._within(prover, proof, most=most, tentative=tentative)
+        if proof.is_complete and wide is not None:
+            proof = wide
             if also:
                 ranges = {f.name: (f.lower, f.upper) for joint in self.mechanism.joints for f in proven_freedoms(joint)}
                 more = {name: ranges[name] for name in also}
@@ -457,6 +474,44 @@ class _Certifying:
         else:
             self._stopped(prover, proof)
         return False
+
+    @overload
+    def _within(self, prover: Prover, proof: Proof) -> Proof: ...
+    @overload
+    def _within(self, prover: Prover, proof: Proof, *, most: int = ..., tentative: bool) -> Proof | None: ...
+    def _within(self, prover: Prover, proof: Proof, *, most: int = MOST_PAIRS, tentative: bool = False) -> Proof | None:
+        """Return a proof that holds within tolerance, if that is requested and the given one is complete.
+
+        If there is none, that is noted, and the given proof returned; nothing is noted, and None returned, if it was tentative.
+        """
+        if self.tolerances is None or not proof.is_complete:
+            return proof
+        wide, fault = self.tolerances.widened(prover, proof, most)
+        if fault is not None:
+            if tentative:
+                return None
+            self.tolerances.note(prover.parts, fault)
+        return wide
+
+    def _still(self, route: Route, tolerances: Tolerances) -> None:
+        """Prove that two parts which do not move against each other are clear within tolerance, unless they touch."""
+        parts = route.parts[0], route.parts[-1]
+        broken = [self.scene.broken[name] for name in parts if name in self.scene.broken]
+        if tolerances.is_ruled(parts):
+            return
+        if broken:
+            self._refuse(parts, tuple(joint.name for joint in route.joints), "; ".join(broken))
+            return
+        prover = Prover(self.scene, route, (), epsilon=self.epsilon, budget=self.budget)
+        proof = prover.keeping(Proof(parts, ()), tolerances.share_of(*parts))
+        if proof.is_complete:
+            self.claims += proof.claims
+            return
+        fault = tolerances.closest(prover, proof)
+        if fault.gap <= self.scene.tolerated(*parts):
+            tolerances.touching(parts)
+        else:
+            tolerances.note(parts, fault)
 
     def _proven(self, prover: Prover, proof: Proof, over: tuple[str, ...] = ()) -> None:
         self.claims += proof.claims
@@ -486,8 +541,9 @@ class _Certifying:
         names = {name for way in found for name in way.names}
         joints = [joint.name for joint in route.joints if joint.name in own or {f.name for f in proven_freedoms(joint)} & names]
         prover = LinkageProver(self.scene, route, joints, found, epsilon=self.epsilon, budget=self.budget)
-        proof = prover.prove(most=FIRST_PAIRS, tentative=tentative)
-        if tentative and not proof.is_complete:
+        found_nominally = prover.prove(most=FIRST_PAIRS, tentative=tentative)
+        proof = self._within(prover, found_nominally, tentative=tentative)
+        if proof is None or (tentative and not proof.is_complete):
             return False
         if proof.out_of_budget and not proof.contacts:
             self.later.append(prover)

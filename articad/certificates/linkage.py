@@ -491,12 +491,20 @@ class LinkageProver(Prover):
             return found
         return replace(found, contacts=({**self.named(outcome.contact), **self._last.driven(outcome.box)},))
 
+    @property
+    def moving(self) -> tuple[Freedom, ...]:
+        """The drivers over what was followed of their ranges, and the coordinates that move independently."""
+        rest = self._rest()
+        ends = {name: span for way in self.ways if way.whole for name, span in zip(way.drivers, way.whole.ends, strict=True)}
+        return (*(Freedom(name, *span, rest[name]) for name, span in ends.items()), *self._own())
+
+    def told(self, point: Sequence[float]) -> dict[str, float]:
+        """Return values of what moves by name."""
+        return {freedom.name: float(value) for freedom, value in zip(self.moving, point, strict=True)}
+
     def seen(self, begun: Proof) -> dict[str, Any]:
         """Return where the two overlap beyond what is allowed, at one of a few values of the moving coordinates, if they do."""
-        whole = [
-            Freedom(name, *ends, 0.0) for way in self.ways if way.whole for name, ends in zip(way.drivers, way.whole.ends, strict=True)
-        ]
-        moving = [*whole, *self._own()]
+        moving = self.moving
         corners = itertools.islice(itertools.product(*((f.lower, f.upper) for f in moving)), LOOKS)
         places = [{f.name: value for f, value in zip(moving, place, strict=True)} for place in [*corners, *scattered(moving, 2 * LOOKS)]]
         if len(moving) == 1:

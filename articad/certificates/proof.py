@@ -22,7 +22,7 @@ from articad.certificates.profile import SLIDING_WEIGHT, WEIGHT, Forest
 from articad.certificates.ranges import PROVEN, turned
 from articad.certificates.spread import Spread
 from articad.connectors.se3 import SE3
-from articad.interference.freedoms import freedoms, scattered, swing_and_twist
+from articad.interference.freedoms import Freedom, freedoms, scattered, swing_and_twist
 from articad.interference.meridian import Ends, leaning, outline, swung
 from articad.interference.motion import Chain, Mover, Route
 from articad.interference.overlap import Overlap, measured, overlap
@@ -45,15 +45,17 @@ _STEADY = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType
 
 
 class Shrink(NamedTuple):
-    """How a surface is moved inwards before it is compared with the other.
+    """How a surface is moved inwards before it is compared with the other, and how far it must then stay away.
 
     Attributes:
         depth: [mm]; 0 leaves it unchanged.
         within: Only vertices within this radius about the joint are moved [mm]: intended contact is near its axis.
+        keep: Distance to be kept in addition to the margin [mm].
     """
 
     depth: float = 0.0
     within: float = math.inf
+    keep: float = 0.0
 
 
 NO_SHRINK = Shrink()
@@ -179,6 +181,25 @@ class Prover:
         signs = [1.0 if mover.forward else -1.0 for mover in self.chain.movers]
         return np.array([sign * R[:, 2] for R, sign in zip(turned, signs, strict=True)])
 
+    def keeping(self, proof: Proof, distance: float, most: int = MOST_PAIRS) -> Proof:
+        """Prove that the surfaces keep a distance in addition to the margin [mm], over the range of another proof of the same pair."""
+        return self._proof(replace(proof, claims=(), lower=None, upper=None), Shrink(keep=distance), most)
+
+    @property
+    def moving(self) -> tuple[Freedom, ...]:
+        """The coordinates that are chosen independently."""
+        return self.chain.freedoms
+
+    def placed(self, place: Mapping[str, float]) -> list[float] | None:
+        """Return the chain's coordinates at values of what moves; None outside the limits of joints."""
+        values = [place[freedom.name] for freedom in self.chain.freedoms]
+        one = np.array([values])
+        return None if self._outside_cone(one, one).any() else values
+
+    def told(self, point: Sequence[float]) -> dict[str, float]:
+        """Return values of what moves by the names used in reports."""
+        return self.pose(point)
+
     @property
     def is_line(self) -> bool:
         """True if a single coordinate moves."""
@@ -234,7 +255,7 @@ class Prover:
     def search_over(self, boxes: Boxes, shrink: Shrink, most: int = MOST_PAIRS) -> Cleared:
         """Prove that the surfaces stay apart over boxes."""
         a, b = self.forests(shrink)
-        needed = self.margin + CLAIM_SLACK_MM
+        needed = self.margin + shrink.keep + CLAIM_SLACK_MM
         outcome = clear(a, b, boxes, needed, axis=self.axis, epsilon=self.epsilon, budget=self.budget, most=most)
         outcome.course = boxes
         return outcome
@@ -248,16 +269,16 @@ class Prover:
                 self._forests[shrink] = Forest.plain(a), Forest.plain(b)
             else:
                 weight = SLIDING_WEIGHT if self.chain.movers[0].joint.type is JointType.SLIDER else WEIGHT
-                self._forests[shrink] = Forest.pair(a, b, *self._outlines(self.axis, a, b), weight)
+                self._forests[shrink] = Forest.pair(a, b, *self._outlines(self.axis, a, b, shrink.keep), weight)
         return self._forests[shrink]
 
     def _sides(self, shrink: Shrink) -> tuple[Surface, Surface]:
         """Return the two surfaces to compare."""
         return self._surface(shrink)[0], whole_surface(self.body_b.mesh)
 
-    def _outlines(self, axis: Core, a: Surface, b: Surface) -> tuple[Ends, Ends, FloatArray]:
+    def _outlines(self, axis: Core, a: Surface, b: Surface, keep: float) -> tuple[Ends, Ends, FloatArray]:
         """Return the coordinates of two surfaces that the joint between them does not change, and the distance required in them."""
-        mover, needed = self.chain.movers[0], self.margin + 2 * CLAIM_SLACK_MM
+        mover, needed = self.chain.movers[0], self.margin + keep + 2 * CLAIM_SLACK_MM
         frame_b = np.asarray(np.linalg.solve(self.chain.matrix(np.zeros(len(self.bounds))), axis.frame))  # where all coordinates are 0
         turns, core_b = mover.joint.type is not JointType.SLIDER, Core(frame_b, axis.dimensions)
         travel = self.travel(mover) if turns else self.slid()
@@ -306,6 +327,7 @@ class Prover:
 
     def _surface(self, shrink: Shrink) -> tuple[Surface, NDArray[np.float32] | None]:
         """Return the first surface, and the displacements of its vertices."""
+        shrink = shrink._replace(keep=0.0)
         if shrink not in self._kept:
             mesh, near = self.body_a.mesh, self.axis if math.isfinite(shrink.within) else None
             moved = inwards(mesh, shrink.depth, near, shrink.within) if shrink.depth else None
@@ -380,7 +402,7 @@ class Prover:
             start=self.named(chain.rest),
             overlap=start.volume,
             shrink=shrink.depth,
-            clear=self.margin,
+            clear=self.margin + shrink.keep,
             course=course,
         )
 

@@ -31,6 +31,12 @@ CERTIFICATE = "certificate.json"
         help="nominal seconds of work, the same work on every machine; pairs not proven within it count as not checked, which is not ok (600)",
     ),
     argument("--epsilon", metavar="MM", type=amount, default=0.001, help="distances up to this count as contact (0.001)"),
+    argument(
+        "--within-tolerance",
+        action="store_true",
+        help="prove it for all parts whose surfaces lie anywhere within their general tolerance and declared fits",
+    ),
+    argument("--tolerance-class", choices=("f", "m", "c", "v"), default="m", help="general tolerance of ISO 2768-1 (m)"),
 )
 def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
@@ -41,7 +47,10 @@ def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
         with terminal.progress("Reading") as tell:
             assembly = assembly_of(run, progress=tell)
         with terminal.progress("Proving"):
-            certificate = assembly.certify(options.joints, pairs=options.pairs, budget=options.budget, epsilon=options.epsilon)
+            tolerance = options.tolerance_class if options.within_tolerance else None
+            certificate = assembly.certify(
+                options.joints, pairs=options.pairs, budget=options.budget, epsilon=options.epsilon, tolerance=tolerance
+            )
         report = record_certificate(run, certificate)
         summaries.print_certificate(report, terminal)
         terminal.say(f"Certificate: {run.path / 'certificate.json'}, {len(certificate.claims)} claims")

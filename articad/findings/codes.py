@@ -515,6 +515,12 @@ CODES: dict[str, Code] = {
     "W_NOT_CERTIFIED": Code(
         "motion", "design", "Two parts are too close to prove that their motion is free; it was sampled.", "Give them a clearance."
     ),
+    "E_TOLERANCE": Code(
+        "motion",
+        "design",
+        "Two parts are clear as modelled, but can meet when their surfaces lie elsewhere within their tolerance.",
+        "Widen the gap, choose a finer class, or declare the fit of the joint.",
+    ),
     "E_FIT_TIGHT": Code(
         "fit", "code", "A joint's gap is smaller than its fit allows.", "Enlarge the bore or thin the pin by the named amount."
     ),

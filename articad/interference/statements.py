@@ -117,6 +117,13 @@ def _certified(certificate: Json) -> Statement:
     whole = f"{proven} of {len(pairs)}"
     allowed = f", {waived} allowed by the plan" if waived else ""
     covers = str(certificate.get("covers", ""))
+    loose = [finding for finding in certificate["findings"] if finding["code"] == "E_TOLERANCE"]
+    if loose and not colliding:
+        return Statement(
+            f"{_counted(len(loose), 'pair')} can meet within tolerance",
+            f"Motion NOT proven within tolerance: {_counted(len(loose), 'pair')} can meet. As modelled, {whole} cases certified{allowed}.",
+            "bad",
+        )
     if certificate["ok"]:
         if not pairs:
             return Statement("motion certified", f"Motion certified: no two parts come near each other; {covers}", "good")

@@ -159,11 +159,13 @@ class Tools:
         joints: Sequence[str] = (),
         pairs: bool = True,
         budget_s: Annotated[float, Field(gt=0, le=3600)] = 120.0,
+        within_tolerance: Annotated[bool, Field(description="for all parts within ISO 2768-m and their fits")] = False,
         detail: Detail = False,
     ) -> Json:
         """Prove that no parts meet over the whole range of each joint, and of pairs of joints. What is not proven in time is not ok."""
         words = [f"--joints={','.join(joints)}"] if joints else []
         words += ["--pairs" if pairs else "--no-pairs", f"--budget={budget_s!r}"]
+        words += ["--within-tolerance"] if within_tolerance else []
         run = str(self.bench.target(design))
         report = await self.bench.run("certify", *words, on=[run], seconds=budget_s + _GRACE_S, tell=_teller(context))
         return condensed(report if detail else report | {"proven": answers.proof(report)}, detail=detail, keep=("proven",))
