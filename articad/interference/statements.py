@@ -117,7 +117,7 @@ def _certified(certificate: Json) -> Statement:
     whole = f"{proven} of {len(pairs)}"
     allowed = f", {waived} allowed by the plan" if waived else ""
     covers = str(certificate.get("covers", ""))
-    loose = [finding for finding in certificate["findings"] if finding["code"] == "E_TOLERANCE"]
+    loose = [finding for finding in certificate.get("findings", ()) if finding["code"] == "E_TOLERANCE"]
     if loose and not colliding:
         return Statement(
             f"{_counted(len(loose), 'pair')} can meet within tolerance",

@@ -37,6 +37,17 @@ def fit(verdict: str = "ok", strength: Any = SAMPLED) -> dict[str, Any]:
     return {"joint": "j", "verdict": verdict, "strength": strength}
 
 
+def test_what_can_meet_within_tolerance_is_not_called_proven() -> None:
+    loose = certificate(*[pair(strength=CERTIFIED)] * 3, ok=False) | {"findings": [{"code": "E_TOLERANCE"}] * 2}
+    said = about_motion(None, loose)
+
+    assert said.badge == "2 pairs can meet within tolerance"
+    assert said.sentence == "Motion NOT proven within tolerance: 2 pairs can meet. As modelled, 3 of 3 cases certified."
+    assert said.state == "bad"
+    collides = certificate(pair("overlap", strength=CERTIFIED), ok=False) | {"findings": [{"code": "E_TOLERANCE"}]}
+    assert "NOT free" in about_motion(None, collides).sentence
+
+
 def certificate(
     *pairs: dict[str, Any], ok: bool = True, covers: str = "proven while all of these joints move at once, each over its whole range: j."
 ) -> dict[str, Any]:
