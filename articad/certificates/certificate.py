@@ -20,11 +20,12 @@ import numpy as np
 
 from articad.certificates.claims import Claim
 from articad.certificates.clearing import MOST_PAIRS
+from articad.certificates.covers import covered
 from articad.certificates.linkage import DriverTrack, LinkageProver
 from articad.certificates.proof import Proof, Prover, beyond
 from articad.certificates.ranges import driven_range, proven_freedoms
 from articad.certificates.tolerance import Tolerances, is_still
-from articad.certificates.verifier import PROOF, Checker, Refuted, covered, widened
+from articad.certificates.verifier import PROOF, Checker, Refuted, widened
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError

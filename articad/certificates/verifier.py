@@ -1,6 +1,6 @@
 """Check a motion certificate without trusting it: the checker behind `articad verify-certificate`.
 
-The checker is independent of the prover and uses NumPy alone. A certificate claims that parts stay apart while joints move within
+The checker is independent of the prover and uses NumPy alone; `verifier_tolerance.py` is a part of it. A certificate claims that parts stay apart while joints move within
 ranges. A proof file says how to cut surfaces and ranges, and which direction separates each two pieces. The checker trusts none of it
 and searches for nothing. It computes every inequality again from meshes and joints, and refutes a proof that omits a piece, a range or a
 pair. The parts of the check:
@@ -9,7 +9,7 @@ pair. The parts of the check:
 - `Checker.closure`, `enclosures`, `held`, `join`: followers of drivers have one solution in a tube about a quadratic curve.
 - `Checker.prove`, `boxes`, `follow`, `apart`, `motion`: each two pieces of surface are further apart than the motion can bring them.
 - `Checker.check_complete`, `missing`, `is_repeated`: every pair of parts has a claim over every range for which it needs one.
-- `Checker.check_tolerance`, `counts`: where claims are to hold within tolerance, they keep the shares of both parts, or say what rules instead.
+- `verifier_tolerance.Tolerance`: where claims are to hold within tolerance, they keep the shares of both parts, or say what rules instead.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from articad.certificates.verifier_tolerance import Tolerance
 
 BYTES = 2**29  # largest size of a file
 PROOF = "_proof"  # no part has this name
@@ -51,13 +53,6 @@ TYPES = {"f": "f8", "i": "i8", "u": "i8", "U": "U"}  # of arrays, by kind: short
 SWUNG = -7  # a piece stays inside a cone about a ball's axis however it swings, and the other one outside
 LEAN, ROUND, OUTSIDE = -6, -5, -4  # pieces differ in angle from a ball's axis, or in radius; a box lies outside the cone of a ball
 BESIDE = np.radians([0, *(sign * 2.0**k for sign in (-1, 1) for k in range(-1, 6))])  # of the cones that keep a swing apart
-SIZES = (3, 6, 30, 120, 400, 1000, 2000, 4000)  # mm: upper ends of the steps of ISO 2768-1, table 1
-GENERAL = {  # its permissible deviations by class [mm]; an infinite one is not in the standard
-    "f": (0.05, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, math.inf),
-    "m": (0.1, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2, 2.0),
-    "c": (0.2, 0.3, 0.5, 0.8, 1.2, 2.0, 3.0, 4.0),
-    "v": (math.inf, 0.5, 1.0, 1.5, 2.5, 4.0, 6.0, 8.0),
-}
 CUT = -3  # and -2, -1: the piece of a, of b, or the box is cut
 
 
@@ -336,51 +331,6 @@ def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: A
     return moved
 
 
-def covered(certificate: dict[str, Any]) -> str:
-    """Return a sentence on what moves together in the claims of a certificate that is marked ok, and what does not."""
-    asked = ", ".join(certificate["asked"]) or "none"
-    free = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["type"] == "free"]
-    still = f" Not covered: free joints stay at rest throughout ({', '.join(free)})." if free else ""
-    checker = Checker(certificate, {PROOF: {}})
-    still += within(checker)
-    left = [f"{a}/{b}" for a, b, _ in checker.missing()]
-    some = f"{', '.join(left[:4])}{f' and {len(left) - 4} more' if len(left) > 4 else ''}"
-    if not left:
-        return f"proven while all of these joints move at once, each over its whole range: {asked}.{still}"
-    if not certificate["together"]:
-        return f"proven for every joint alone, the others at rest: {asked}; two or more at once: not covered for {some}.{still}"
-    return f"proven for every joint alone and every two together: {asked}; three or more at once: not covered for {some}.{still}"
-
-
-def within(checker: Checker) -> str:
-    """Return a sentence on what a certificate that is marked ok claims within tolerance; nothing if it claims nothing so."""
-    certificate, stated = checker.certificate, checker.certificate.get("tolerance")
-    if stated is None:
-        return ""
-    ruled = {frozenset(row["parts"]) for row in stated["rows"]}
-    clear = len({frozenset(claim["parts"]) for claim in certificate["claims"] if checker.counts(claim)} - ruled)
-    pairs = math.comb(len(certificate["meshes"]), 2)
-    by = {kind: [row for row in stated["rows"] if row["by"] == kind] for kind in ("fit", "contact", "waiver")}
-    shares, said = stated["shares_mm"].values(), [f"{clear} of {pairs} pairs of parts stay clear"]
-    if by["fit"]:
-        plays = [row["least_mm"] for row in by["fit"]]
-        said.append(f"{len(plays)} ruled by their declared fits (least play {min(plays):.4g} mm), of which nothing else is claimed")
-    deep = [row["depth_mm"] for row in by["contact"] if "depth_mm" in row]
-    if deep:
-        said.append(f"{len(deep)} touch by design, proven only no deeper than {max(deep):.4g} mm")
-    if len(by["contact"]) > len(deep):
-        said.append(f"{len(by['contact']) - len(deep)} are fixed to each other and touch, of which nothing is claimed")
-    if by["waiver"]:
-        said.append(f"{len(by['waiver'])} waived")
-    if pairs > clear + len(ruled):
-        said.append(f"{pairs - clear - len(ruled)} not claimed, as no requested joint moves them")
-    span = f"{min(shares, default=0):g} to {max(shares, default=0):g} mm, by its part's largest extent"
-    return (
-        f" Within ISO 2768-{stated['class']}, each point of a surface up to its tolerance ({span}) from its nominal place, frames of joints "
-        f"exact: {'; '.join(said)}."
-    )
-
-
 class Checker:
     """Checks a certificate with its meshes and its proof."""
 
@@ -388,6 +338,7 @@ class Checker:
         self.certificate, self.meshes, self.proof = certificate, arrays, arrays[PROOF]
         self.joints, self.drivers = {joint["name"]: joint for joint in certificate["mechanism"]["joints"]}, list(certificate["drivers"])
         self.freedoms = {f["name"]: f for joint in self.joints.values() for f in joint["freedoms"]}
+        self.tolerance = Tolerance(certificate)
         self.fixed = {name for name, joint in self.joints.items() if not joint["freedoms"]}
         self.rest = {name: f["rest"] for name, f in self.freedoms.items()}
         self.frames = {name: framed(j["parent_frame"], j["child_frame"]) for name, j in self.joints.items()}
@@ -413,55 +364,9 @@ class Checker:
             except Refuted as reason:
                 raise Refuted(f"{'/'.join(claim['parts'])} over {', '.join(sorted(claim['vary']))}: {reason}") from None
         if whole["ok"]:
-            self.check_tolerance()
+            for fault in self.tolerance.faults(self.meshes, self.together):
+                raise Refuted(fault)
             self.check_complete()
-
-    def check_tolerance(self) -> None:
-        """Refute wrong shares of parts, pairs that are excused without a reason, and parts that stand too close to each other."""
-        whole, stated = self.certificate, self.certificate.get("tolerance")
-        if stated is None:
-            return
-        need(stated["class"] in GENERAL, "its tolerance class is not of ISO 2768-1")
-        for name in whole["meshes"]:
-            size = round(float(np.ptp(self.meshes[name]["vertices"], axis=0).max()), 6)
-            step = next((at for at, end in enumerate(SIZES) if size <= end), None)
-            share = math.inf if step is None else GENERAL[stated["class"]][step]
-            need(share < math.inf and stated["shares_mm"].get(name) == share, f"the tolerance of {name} is not that of its {size:.6g} mm")
-        rows = [(row, {*row["parts"]}) for row in stated["rows"]]
-        need(all([pair for _, pair in rows].count(pair) == 1 for _, pair in rows), "what rules a pair is said twice")
-        waived = [{*pair["parts"]} for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
-        for row, pair in rows:
-            told = "/".join(row["parts"])
-            need(row["by"] in ("fit", "contact") or (row["by"] == "waiver" and pair in waived), f"nothing rules {told}")
-            if row["by"] == "fit":
-                named = [self.joints[name] for name in row["joints"]]
-                need(named and all(self.joins(joint, *row["parts"]) for joint in named), f"no fit rules {told}")
-                between = {joint["name"] for joint in self.joints.values() if {joint["parent"], joint["child"]} == pair}
-                need(between <= {*row["joints"]}, f"a joint of {told} declares no fit")
-                need(row["least_mm"] >= 0 or not any(joint["freedoms"] for joint in named), f"a fit may lock {told}, which move")
-        known = [pair for _, pair in rows] + [{*claim["parts"]} for claim in whole["claims"] if self.counts(claim)]
-        for a, b in itertools.combinations(whole["meshes"], 2):
-            is_still = self.way(a, b, self.fixed, whole=False) is not None
-            need(not is_still or {a, b} in known, f"{a}/{b} do not move against each other, and are not proven clear within tolerance")
-
-    def counts(self, claim: dict[str, Any]) -> bool:
-        """Return whether a claim is enough for its pair: within tolerance it keeps the shares of both parts, unless something else rules."""
-        stated, parts = self.certificate.get("tolerance"), claim["parts"]
-        row = None if stated is None else next((row for row in stated["rows"] if {*row["parts"]} == {*parts}), None)
-        if stated is None or (row is not None and row["by"] != "contact"):
-            return True
-        shares = sum(stated["shares_mm"].get(name, math.inf) for name in parts)
-        if row is not None and claim["shrink_mm"] > 0:
-            return bool(row.get("depth_mm", 0.0) >= claim["shrink_mm"] + shares - ROUNDING)
-        deflections = sum(self.certificate["meshes"][name]["deflection_mm"] for name in parts)
-        return bool(claim["shrink_mm"] == 0 and claim["clear_mm"] >= deflections + shares - ROUNDING)
-
-    def joins(self, joint: dict[str, Any], a: str, b: str) -> bool:
-        """Return whether a joint connects two parts, or parts to which they are fixed."""
-        ends = ((joint["parent"], joint["child"]), (joint["child"], joint["parent"]))
-        return any(
-            all(self.way(part, end, self.fixed, whole=False) is not None for part, end in zip((a, b), two, strict=True)) for two in ends
-        )
 
     def check_complete(self) -> None:
         """Refute a certificate without a claim for each two parts over each joint, and each two joints, by which they can move."""
@@ -481,11 +386,11 @@ class Checker:
         """Yield two parts, and the sets of `count` joints, or of all, that can move them together without a claim that covers it."""
         whole = self.certificate
         waived = [{*pair["parts"]} for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
-        claims = [claim for claim in whole["claims"] if self.counts(claim)]
+        claims = [claim for claim in whole["claims"] if self.tolerance.counts(claim)]
         ways = [{f["name"] for name in claim["via"] for f in self.joints[name]["freedoms"]} for claim in claims]
         said = [({*claim["parts"]}, {*claim["vary"]}, via) for claim, via in zip(claims, ways, strict=True)]
         for a, b in itertools.combinations(whole["meshes"], 2):
-            if {a, b} in waived or self.way(a, b, self.fixed, whole=False) is not None:
+            if {a, b} in waived or self.together(a, b):
                 continue
             joints = [joint for joint, _ in self.way(a, b) if joint["freedoms"]]
             own, mine = {f["name"] for joint in joints for f in joint["freedoms"]}, [said for said in said if said[0] == {a, b}]
@@ -537,6 +442,10 @@ class Checker:
                         todo.append(far)
         need(b in ways or not whole, f"no joints lead from {a} to {b}")
         return ways.get(b)
+
+    def together(self, a: str, b: str) -> bool:
+        """Return whether no joint moves two parts against each other."""
+        return self.way(a, b, self.fixed, whole=False) is not None
 
     def grouped(self, couplings: Any) -> list[list[str]]:
         """Return the coordinates that loops and couplings connect, grouped by what moves together; couplings connect coordinates, not joints."""

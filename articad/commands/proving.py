@@ -88,7 +88,7 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
 
 def _stated(certificate: Report) -> list[str]:
     """Return what an accepted certificate covers: its author chose that, and no proof shows whether it is enough."""
-    from articad.certificates.verifier import covered
+    from articad.certificates.covers import covered
 
     moving = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["freedoms"]]
     still = [name for name in moving if name not in certificate["asked"]]

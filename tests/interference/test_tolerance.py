@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from articad.certificates.certificate import Certificate, certify
-from articad.certificates.verifier import GENERAL, SIZES
+from articad.certificates.verifier_tolerance import GENERAL, SIZES
 from articad.geometry import TriMesh, box, cylinder
 from articad.interference.relations import FitLike
 from articad.kinematics.joints import Joint
@@ -207,7 +207,7 @@ def test_parts_that_are_glued_together_are_not_claimed() -> None:
     meshes = {"low": box(40, 40, 10), "high": box(40, 40, 10).transformed(at(0, 0, 10))}
     certificate = proven(meshes, [fixed("glue", "low", "high")])
     assert certificate.ok
-    assert "1 are fixed to each other and touch, of which nothing is claimed" in document_of(certificate)["covers"]
+    assert "1 fixed to each other and said to touch, of which nothing is claimed" in document_of(certificate)["covers"]
     assert verified(document_of(certificate), certificate) == []
 
 
@@ -308,10 +308,10 @@ def test_a_joint_without_a_fit_cannot_be_ruled_by_another_pairs_fit() -> None:
     document["tolerance"]["rows"].append(
         {"parts": ["block", "far"], "by": "fit", "joints": ["turn"], "fits": ["20 H7/g6"], "least_mm": 0.0035}
     )
-    assert any("no fit rules block/far" in fault for fault in verified(document, certificate))
+    assert any("nothing rules block/far" in fault for fault in verified(document, certificate))
     document = document_of(certificate)
     document["tolerance"]["rows"][0]["least_mm"] = -0.01
-    assert any("may lock" in fault for fault in verified(document, certificate))
+    assert any("nothing rules block/pin" in fault for fault in verified(document, certificate))
 
 
 def test_a_waived_pair_is_said_to_be_waived() -> None:
