@@ -31,14 +31,16 @@ MAX_DEPTH = 50_000  # nesting of elements: a chain of MAX_LINKS bodies, twice
 _FEW = 20_000  # equals signs up to which a file is parsed without a prior count: half a second at worst
 MM_PER_M = 1000.0
 ELSEWHERE = "Put the mesh where the file names it, or name a folder above both as the root (--root)."
+_REMEDY = {
+    "E_UNSAFE_PATH": "Keep the named file below the folder of the file that names it, or name a folder above both as the root (--root)."
+}
 LARGEST_MM = 1e12  # for the position of a frame: beyond it, doubles do not resolve a millimetre
 
 
 def unreadable(path: Path | str, where: str, reason: str, code: str = "E_READ") -> ReadError:
     """Return the error that says where a file is wrong, and how."""
-    finding = Finding(
-        code=code, where=f"{path}: {where}" if where else str(path), message=reason, hint="Correct the file at the named place."
-    )
+    hint = _REMEDY.get(code, "Correct the file at the named place.")
+    finding = Finding(code=code, where=f"{path}: {where}" if where else str(path), message=reason, hint=hint)
     return ReadError(f"{path}: {where}: {reason}" if where else f"{path}: {reason}", path=str(path), where=where, findings=[finding])
 
 
