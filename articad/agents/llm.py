@@ -490,10 +490,15 @@ class Budget:
         minutes = self._limits[3]
         return math.inf if minutes is None else 60 * minutes - (self._clock() - self._began)
 
-    @staticmethod
-    def _error(spent: str, step: str) -> BudgetError:
-        finding = Finding(code="E_BUDGET", where=f"llm.{step}", message=spent, hint="Raise the limit and resume the run.")
+    def _error(self, spent: str, step: str) -> BudgetError:
+        hint = "Raise the limit and resume the run." if self._priced else "Limit calls or tokens instead of the cost, and resume the run."
+        finding = Finding(code="E_BUDGET", where=f"llm.{step}", message=spent, hint=hint)
         return BudgetError(f"{spent} {step!r} was not answered.", spent=spent, findings=[finding])
+
+    @property
+    def _priced(self) -> bool:
+        """Whether a limit of cost, if there is one, can be enforced."""
+        return self._limits[2] is None or self.cost_unknown_of is None
 
     def _spent(self, left: float) -> str | None:
         calls, tokens, cost, minutes = self._limits
@@ -503,8 +508,8 @@ class Budget:
             return f"The budget of {tokens} tokens is spent: {self.tokens} were used."
         if cost is not None and self.cost >= cost:
             return f"The budget of ${cost:g} is spent: ${self.cost:.4f} were used."
-        if cost is not None and self.cost_unknown_of is not None:
-            return f"The price of {self.cost_unknown_of} is unknown, so a budget of ${cost:g} cannot be enforced; limit calls or tokens instead."
+        if not self._priced:
+            return f"The price of {self.cost_unknown_of} is unknown, so a budget of ${cost:g} cannot be enforced."
         if left <= 0:
             return f"The budget of {minutes:g} minutes is spent."
         return None

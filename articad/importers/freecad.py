@@ -157,7 +157,8 @@ class _Model:
         for item in self.members:
             self._take(item)
         self.names = {item: name for name, item in self.parts.items()}
-        self.ground = self._grounded()
+        self.grounded = self._grounded()
+        self.ground = self.grounded[0]
         self.poses = {name: self._held[item] @ item.placement for name, item in self.parts.items()}
         self.colors = {self.document.path: self.document.colors()}
         self._solids: dict[FreeCADObject, tuple[Solid | None, tuple[Shape, ...]]] = {}
@@ -187,14 +188,13 @@ class _Model:
         if known:
             self.recorded[given] = name
 
-    def _grounded(self) -> str:
+    def _grounded(self) -> tuple[str, ...]:
+        """Return the parts that are grounded, at least one; the first is the ground, and the others do not move against it."""
         joints = [item for item in self.joint_items() if self.document.has(item.name, "ObjectToGround")]
-        grounded = [self.document.links(item.name, "ObjectToGround") for item in joints]
-        for names in grounded:
-            item = FreeCADObject(self.document, names[0]) if names else None
-            if item in self.names:
-                return self.names[item]
-        raise unreadable(self.path, self.assembly.name, "No part of the assembly is grounded.")
+        linked = [FreeCADObject(self.document, name) for item in joints for name in self.document.links(item.name, "ObjectToGround")[:1]]
+        if found := tuple(self.names[item] for item in linked if item in self.names):
+            return found
+        raise unreadable(self.path, self.assembly.name, "No part of the assembly is grounded.", hint="Ground one of its parts in FreeCAD.")
 
     def joint_items(self) -> list[FreeCADObject]:
         """Return the joints of the assembly and of flexible assemblies in it, not those of rigid ones."""
@@ -458,11 +458,11 @@ class _Model:
     def refused(self, item: FreeCADObject, kind: str, why: str = "has a type that articad does not support") -> ArticadError:
         """Return the error that names a joint which cannot be read."""
         label = item.text("Label") or item.name
-        message = (
-            f"Joint {label!r} ({kind}) {why}. Use Fixed, Revolute, Slider, Cylindrical, Ball, Gears, Belt, RackPinion or Screw, "
+        hint = (
+            "Use Fixed, Revolute, Slider, Cylindrical, Ball, Gears, Belt, RackPinion or Screw, "
             "or one of these beside it between the same two parts, or suppress the joint in FreeCAD."
         )
-        return unreadable(self.path, item.name, message, "E_FREECAD_JOINT")
+        return unreadable(self.path, item.name, f"Joint {label!r} ({kind}) {why}.", "E_FREECAD_JOINT", hint)
 
     def constraint(self, item: FreeCADObject, kind: str) -> Constraint:
         """Return the values of a joint that restricts: Distance, Parallel, Perpendicular or Angle.
@@ -618,31 +618,34 @@ class _Model:
         return MassProperties.combined(mass for mass in masses if mass is not None) if masses and None not in masses else None
 
     def loose(self, joints: list[Joint]) -> list[Joint]:
-        """Return free joints to the ground for parts that no joint connects to it, and say so."""
+        """Return joints to the ground for parts that no joint connects to it: fixed ones for grounded parts, free ones and a finding for others."""
         reached, made = _reached(self.ground, joints), []
         taken = {joint.name for joint in joints}
         for name in self.parts:
             if name in reached:
                 continue
-            joint_name = _free(f"{name}_loose", taken)
+            held = name in self.grounded
+            joint_name = _free(f"{name}_{'grounded' if held else 'loose'}", taken)
             taken.add(joint_name)
             T = self.poses[self.ground].inverse() @ self.poses[name]
             ends = (f"{joint_name}_1", f"{joint_name}_2")
             made.append(
                 Joint(
                     name=joint_name,
-                    type=JointType.FREE,
+                    type=JointType.FIXED if held else JointType.FREE,
                     parent=self.ground,
                     child=name,
                     parent_connector=ends[0],
                     child_connector=ends[1],
-                    T_parent_connector=IDENTITY,
+                    T_parent_connector=T if held else IDENTITY,
                     T_child_connector=IDENTITY,
                     limits=JointLimits((), ()),
-                    rest=tuple(map(float, T.data)),
+                    rest=() if held else tuple(map(float, T.data)),
                 )
             )
             reached |= _reached(name, joints)
+            if held:
+                continue
             message = f"No joint connects part {name!r} to the grounded part. It is loose and has a free joint."
             hint = "Connect it with a joint in FreeCAD, or ground it there."
             self.findings.append(Finding(code="W_FREECAD_LOOSE", where=f"parts.{name}", parts=(name,), message=message, hint=hint))

@@ -37,11 +37,11 @@ _REMEDY = {
 LARGEST_MM = 1e12  # for the position of a frame: beyond it, doubles do not resolve a millimetre
 
 
-def unreadable(path: Path | str, where: str, reason: str, code: str = "E_READ") -> ReadError:
-    """Return the error that says where a file is wrong, and how."""
-    hint = _REMEDY.get(code, "Correct the file at the named place.")
-    finding = Finding(code=code, where=f"{path}: {where}" if where else str(path), message=reason, hint=hint)
-    return ReadError(f"{path}: {where}: {reason}" if where else f"{path}: {reason}", path=str(path), where=where, findings=[finding])
+def unreadable(path: Path | str, where: str, reason: str, code: str = "E_READ", hint: str = "") -> ReadError:
+    """Return the error that says where a file is wrong, how, and what to do if more than to correct that place."""
+    place = f"{path}: {where}" if where else str(path)
+    finding = Finding(code=code, where=place, message=reason, hint=hint or _REMEDY.get(code, "Correct the file at the named place."))
+    return ReadError(f"{place}: {reason} {hint}".rstrip(), path=str(path), where=where, findings=[finding])
 
 
 def color_text(rgba: Iterable[float]) -> str:

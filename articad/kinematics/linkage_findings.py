@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from articad.kinematics.branch import Group
     from articad.kinematics.mechanism import Mechanism
 
+_PARALLEL = 1e-9  # rad: axes that differ less are parallel
 _STILL = 1e-9  # of a unit motion of the whole mechanism: a coordinate that moves less stands still
 _MOST_LOOPS_RELEASED = 4  # a proposal costs a few ms per joint; larger mechanisms compute it on request
 
@@ -139,14 +140,15 @@ def _locked(group: Group, driver: Joint, beyond: Correction | None) -> Finding:
     sigma = group.analysis.near
     message = f"mobility 0: driver {driver.name!r} cannot move; the smallest singular value is {sigma:.2g}"
     loops = [loop for loop in group.system.loops if driver.name in {joint.name for joint in loop.joints}]
-    named = False
+    named, hint = False, "Make the hinge axes parallel, or release a joint of the loop."
     for loop in loops[:1]:
         joint, tilt = _most_tilted(group, loop.joints)
-        if 0 < tilt < math.radians(5):  # a larger angle means a spatial loop, not a misalignment
+        if tilt <= _PARALLEL:
+            hint = "Its axes are parallel: change a length, add a link, or release a joint of the loop."
+        elif tilt < math.radians(5):  # a larger angle means a spatial loop, not a misalignment
             named = True
             message += f" and belongs to the axis of {joint.parent}.{joint.parent_connector}, tilted by {math.degrees(tilt):.3f}°"
     parts = loops[0].parts if loops else (driver.parent, driver.child)
-    hint = "Make the hinge axes parallel, or release a joint of the loop."
     if beyond is not None and beyond.closed and not named:
         cause, hint = inconsistency(beyond)
         message += f": {cause}"

@@ -195,7 +195,7 @@ def _tipping(stances: Sequence[Stance], ground: str) -> list[Finding]:
             where=f"parts.{ground}",
             parts=(ground,),
             message=f"The product tips over{_at(worst.at)}: its centre of mass is {-worst.margin:.3g} mm outside the points on which it stands.",
-            hint="Widen the base, move mass over it, shorten the travel, or fasten the product to something that is an environment part of the plan.",
+            hint="Widen the base, move mass over it, or shorten the travel. A product that is fastened where it stands needs nothing.",
             value=worst.margin,
             limit=0.0,
             unit="mm",

@@ -16,6 +16,7 @@ from articad.kinematics.joints import Joint
 from articad.support.check import BodySupport, Support, check_support
 from tests.disassembly.test_order import BOX, INSIDE, LID, block
 from tests.interference.mechanisms import IDENTITY, fixed, joint, manifold_mesh
+from tests.obedience import assert_heals
 
 
 def supported(
@@ -84,3 +85,34 @@ def test_what_falls_at_an_end_of_a_range_only_is_found_there() -> None:
     support = supported({"table": table, "thing": thing}, [loose], "table", others=(OtherPose({"push": 50.0}, beyond),))
     (finding,) = support.findings
     assert finding.pose == {"push": 50.0}
+
+
+HINTS = {  # what a reader of the hint makes of the base, the place of the arm's end, and its travel [mm]
+    "Widen the base": (120.0, 0.0, 50.0),
+    "move mass over it": (40.0, 0.0, 0.0),
+    "or shorten the travel": (40.0, 0.0, 10.0),
+}
+
+
+def slide(base: float, reach: float, travel: float) -> Support:
+    """A block that slides out over a base by a travel; all the mass is in it."""
+    solids = {"base": block((-base / 2, base / 2), (-20, 20), (0, 10)), "slide": block((-5, 5), (-5, 5), (10, 20))}
+    start, end = ({"base": IDENTITY, "slide": SE3.trans(x, 0, 0)} for x in (reach, reach + travel))
+    scene = Scene.of({name: manifold_mesh(solid) for name, solid in solids.items()}, [fixed("rail", "base", "slide")])
+    return check_support(
+        scene,
+        start,
+        "base",
+        others=(OtherPose({"push": travel}, end),),
+        made=("rail",),
+        centre_of_mass=lambda poses: poses["slide"].translation,
+    )
+
+
+@pytest.mark.parametrize("words", HINTS)
+def test_a_product_that_is_made_as_the_hint_says_tips_over_no_more(words: str) -> None:
+    """Planted: the block is over the base at rest and 30 mm beyond its edge at the end, or beyond it at rest where mass is to move."""
+    before = slide(40.0, 60.0 if words == "move mass over it" else 0.0, 50.0).findings
+    (finding,) = before.of("W_TIPS_OVER")
+    assert words in finding.hint
+    assert_heals(finding, before, slide(*HINTS[words]).findings)
