@@ -16,9 +16,17 @@ def same(a: Finding, b: Finding) -> bool:
 
 
 def worse(before: Iterable[Finding], after: Iterable[Finding]) -> list[Finding]:
-    """Return the errors that were not there before, by code and place."""
-    known = {(finding.code, _LINE.sub("", finding.where)) for finding in before}
-    return [one for one in after if one.severity == "error" and (one.code, _LINE.sub("", one.where)) not in known]
+    """Return the errors that were not there before: no error of that code was about the place, or about the same parts."""
+    known = [(one.code, _LINE.sub("", one.where), one.parts) for one in before]
+    return [
+        one
+        for one in after
+        if one.severity == "error"
+        and not any(
+            one.code == code and (_LINE.sub("", one.where) == where or (parts and set(one.parts) == set(parts)))
+            for code, where, parts in known
+        )
+    ]
 
 
 def assert_heals(finding: Finding, before: Iterable[Finding], after: Iterable[Finding]) -> None:

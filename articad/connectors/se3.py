@@ -360,11 +360,21 @@ def axis_findings(o: npt.ArrayLike, z: npt.ArrayLike, x: npt.ArrayLike | None = 
         if not np.isfinite(vector).all():
             findings.append(_axis_finding("E_NONFINITE", f"{where}.{key}", f"{_text(vector)} is not finite.", "Give finite numbers."))
         elif key != "o" and np.linalg.norm(vector) < _AXIS_ZERO:
-            hint = "Give a direction, such as (0, 0, 1)." if key == "z" else "Give a direction perpendicular to z."
+            hint = (
+                f"Give a direction, such as {_text(_z_across(given.get('x')))}." if key == "z" else "Give a direction perpendicular to z."
+            )
             findings.append(_axis_finding("E_AXIS_ZERO", f"{where}.{key}", f"{_text(vector)} has no direction.", hint))
     if not findings and "x" in given:
         findings.extend(_right_angle_findings(_unit(given["z"]), _unit(given["x"]), f"{where}.x"))
     return Findings(findings)
+
+
+def _z_across(x: FloatArray | None) -> FloatArray:
+    """Return a z `(3,)` perpendicular to x, upwards where that is possible."""
+    up = np.array([0.0, 0.0, 1.0])
+    if x is None or not np.isfinite(x).all() or np.linalg.norm(x) < _AXIS_ZERO or abs(x @ up) < _AXIS_PARALLEL:
+        return up
+    return world_x(x)
 
 
 def _right_angle_findings(z: FloatArray, x: FloatArray, where: str) -> list[Finding]:

@@ -115,7 +115,7 @@ def _limits(form: JointForm, joint_type: JointType, where: str, evaluation: Eval
         elif given != "endless":
             low, high = (evaluation.number(bound, where, f"{axis.range}[{i}]") for i, bound in enumerate(given))
             if not math.isnan(low) and not math.isnan(high):  # NaN was reported already
-                _check_range((low, high), rest, axis, where, evaluation, many_turns=many_turns)
+                _check_range((low, high), rest, axis, where, evaluation, many_turns=many_turns, only=len(AXES[joint_type]) == 1)
         lower.append(low * scale)
         upper.append(high * scale)
         rests.append(rest * scale)
@@ -132,8 +132,16 @@ def _report_missing(form: JointForm, axis: _Axis, where: str, evaluation: Evalua
 
 
 def _check_range(
-    limits: tuple[float, float], rest: float, axis: _Axis, where: str, evaluation: Evaluation, *, many_turns: bool = False
+    limits: tuple[float, float],
+    rest: float,
+    axis: _Axis,
+    where: str,
+    evaluation: Evaluation,
+    *,
+    many_turns: bool = False,
+    only: bool = False,
 ) -> None:
+    """Report a range that is reversed, empty, of another unit or without the rest value; `only` if the joint has no other."""
     low, high = limits
     path, unit, given = f"{where}.{axis.range}", axis.unit, f"[{low:.6g}, {high:.6g}]"
     if low > high:
@@ -141,7 +149,11 @@ def _check_range(
         evaluation.report("E_LIMITS_ORDER", path, f"Limits {given}: the lower is above the upper.", hint, value=low, limit=high, unit=unit)
         return
     if low == high:
-        hint = "Make it a fixed joint, or open the range."
+        hint = (
+            "Make it a fixed joint and declare one freedom less, or open the range."
+            if only
+            else "Open the range, or use a joint without it."
+        )
         evaluation.report("W_LIMITS_EQUAL", path, f"Limits {given}: the joint cannot move.", hint, value=low, limit=high, unit=unit)
     if unit == "deg":
         _check_degrees(limits, path, evaluation, many_turns=many_turns)

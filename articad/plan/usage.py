@@ -192,7 +192,9 @@ def _chiral(draft: Draft) -> list[Finding]:
         words += [spec.kind for spec in part.connector_specs if spec.kind == "thread_axis"]
         if words:
             message = f"{part.name} mirrors {part.source}, which seems to have a handedness ({', '.join(dict.fromkeys(words))})."
-            hint = "Make it a part of its own, or derive it with op 'rigid', unless the other hand is meant."
+            hint = (
+                "Make it a part of its own, or derive it with op 'rigid' and place it and its joints anew, unless the other hand is meant."
+            )
             found.append(Finding(code="W_CHIRAL", where=f"{part.where}.derive", message=message, hint=hint, parts=(part.name,)))
     for line in draft.lines:
         if isinstance(line.form, DerivedJoint) and line.form.derive.op == "mirror" and line.root.type == "screw":

@@ -156,8 +156,14 @@ def exchanged(finding: Finding, plan: Json, _match: Match) -> Json:
     return {f"{finding.where}.parent": held["child"], f"{finding.where}.child": held["parent"]}
 
 
-def held_fast(finding: Finding, _plan: Json, _match: Match) -> Json:
-    return {finding.where: None, f"{above(finding.where)}.type": "fixed"}
+def held_fast(finding: Finding, plan: Json, _match: Match) -> Json:
+    return {finding.where: None, f"{above(finding.where)}.type": "fixed", "freedoms": plan["freedoms"] - 1}
+
+
+def without_other_driver(finding: Finding, _plan: Json, _match: Match) -> Json:
+    told = re.search(r"but (\w+)[^,]* already drive", finding.message)
+    assert told
+    return {f"joints.{told[1]}.driver": None}
 
 
 def moved_key(finding: Finding, plan: Json, match: Match) -> Json:
@@ -264,6 +270,7 @@ RULES = [
     Rule(r"Set its limits to (\[.*?\]) (deg|mm)", limited),
     Rule(r"or widen those of (\w+)", lambda _finding, _plan, match: {f"joints.{match[1]}.angle_deg": "endless"}),
     Rule(r"Remove the driver mark of '(\w+)'", lambda _finding, _plan, match: {f"joints.{match[1]}.driver": None}),
+    Rule(r"or of the joint that it is to replace", without_other_driver),
     Rule(r"Remove a coupling|or remove 'environment'", here(None)),
     Rule(r"^Parameters: (\w+)", respelt),
     Rule(
@@ -303,7 +310,7 @@ RULES = [
     Rule(r"eclare a connector for each joint", connector_of_its_own),
     Rule(r"Declare a connector where", connectors_that_joints_name),
     Rule(r"Name two different parts", another_part),
-    Rule(r"Remove one of them|Remove the driver mark|eave it out|Remove one joint of the loop", here(None)),
+    Rule(r"Remove one of them|Remove the driver mark(?! of)|eave it out|Remove one joint of the loop", here(None)),
     Rule(r"drop 'tree'", lambda _finding, _plan, _match: {"tree": None}),
     Rule(r"Choose one of \['(\w+)'", lambda finding, _plan, match: {finding.where: match[1]}),
     Rule(r"Add a joint between", joined),
@@ -313,7 +320,7 @@ RULES = [
     Rule(r'or "endless"', here("endless")),
     Rule(r"Did you mean (\[.*?\])\?", here_json),
     Rule(r"Give an angle above 0 up to 180", here(90)),
-    Rule(r"Make it a fixed joint", held_fast),
+    Rule(r"Make it a fixed joint and declare one freedom less", held_fast),
     Rule(r"or open the range", here([0, 90])),
     Rule(r"If radians were meant, give (.*)\.", here_json),
     Rule(r"Give degrees within \[-720, 720\]", here([0, 720])),
@@ -358,6 +365,7 @@ RULES = [
 
 def followed(finding: Finding, plan: Json) -> list[Json]:
     """Return the plan after each of the changes that a hint offers, in its order."""
-    matches = [(match.start(), rule, match) for rule in RULES if (match := re.search(rule.words, finding.hint or ""))]
+    advice = (finding.hint or "").partition("At this value alone:")[0]  # what follows is about another value than the plan's
+    matches = [(match.start(), rule, match) for rule in RULES if (match := re.search(rule.words, advice))]
     changes = [rule.changes(finding, plan, match) for _, rule, match in sorted(matches, key=lambda one: one[0])]
     return [amended(plan, change) for change in changes if change]

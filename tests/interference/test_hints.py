@@ -16,13 +16,16 @@ import numpy as np
 import pytest
 
 from articad.certificates.certificate import certify
-from articad.certificates.fits import check_fits
+from articad.certificates.fits import certified_fits, check_fits
 from articad.findings import Finding, Findings
 from articad.geometry import box, cylinder, merged, sphere
 from articad.interference.scene import Scene
 from articad.kinematics.mechanism import Mechanism
-from tests.interference.mechanisms import Fit, at, block_with_bore, fixed, joint, manifold_mesh
+from tests.interference.mechanisms import IDENTITY, Fit, at, block_with_bore, fixed, joint, manifold_mesh
+from tests.interference.test_certificate import arm, without_triangle
+from tests.interference.test_check import check
 from tests.interference.test_diagnosis import FORK_HINGE, OUT, PANELS, PINS, TONGUE, cabinet, findings, flap, fork, rods
+from tests.obedience import worse
 
 Knobs = dict[str, Any]
 NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"
@@ -150,6 +153,49 @@ def facing(knobs: Knobs) -> Findings:
     return check_fits(Scene.of(meshes, [plane], deflection=knobs["deflection"], fits={"slide": Fit(0.1, 0.4)})).findings
 
 
+def widened(knobs: Knobs, match: re.Match[str]) -> Knobs:
+    return {"bore": knobs["bore"] + 2 * float(match[1])}
+
+
+def forced(knobs: Knobs) -> Findings:
+    """A long pin of 10.26 mm in a bore."""
+    turn = joint("turn", "revolute", "a", "b")
+    return check(block_with_bore(40, 10, knobs["bore"] / 2, 96), cylinder(5.13, 100, 96), IDENTITY, (turn,), deflection=0.003).findings
+
+
+def open_or_closed(knobs: Knobs) -> Findings:
+    """A block beside a mesh that lacks a triangle, or is whole."""
+    other = box(10, 10, 10)
+    body = other if knobs["closed"] else without_triangle(other)
+    return findings({"base": body, "arm": box(10, 10, 10).transformed(at(10))}, [fixed("glue", "base", "arm")])
+
+
+def proven_closed(knobs: Knobs) -> Findings:
+    body = box(10, 10, 10) if knobs["closed"] else without_triangle(box(10, 10, 10))
+    frame = joint("turn", "revolute", "base", "arm", lower=(-0.5,), upper=(0.5,))
+    return certify({"base": body, "arm": box(10, 10, 10).transformed(at(50))}, Mechanism(("base", "arm"), "base", [frame])).findings
+
+
+def spent(knobs: Knobs) -> Findings:
+    meshes, joints = arm(260.0)
+    more = {} if knobs["budget"] is None else {"budget": knobs["budget"]}
+    return certify(meshes, Mechanism(tuple(meshes), "base", joints), **more).findings
+
+
+def pressed(knobs: Knobs) -> Findings:
+    meshes = {"block": block_with_bore(40, 10, 5, 48), "pin": cylinder(knobs["pin"], 20, 48)}
+    turn = joint("turn", "revolute", "block", "pin", lower=(-0.5,), upper=(0.5,))
+    return certify(meshes, Mechanism(tuple(meshes), "block", [turn])).findings
+
+
+def sliding(knobs: Knobs) -> Findings:
+    """A block in a long guide, with a slide that has limits or none."""
+    link = joint("j", "slider", "a", "b", lower=(-knobs["far"],), upper=(knobs["far"],))
+    bore = m3.Manifold.cube([knobs["bore"], knobs["bore"], 999], center=True)
+    guide = manifold_mesh(m3.Manifold.cube([20, 20, 900], center=True) - bore)
+    return certified_fits(check_fits(Scene.of({"a": guide, "b": box(10, 10, 20)}, [link], fits={"j": Fit(0.1, 0.4)}))).findings
+
+
 CASES = [
     *(
         Case("E_STATIC_OVERLAP", bored, {"pin": pin, "bore": 0.0}, [(rf"Bore block .* diameter of {NUMBER} mm", to("bore"))])
@@ -209,6 +255,17 @@ CASES = [
         "E_FIT_CONTACT", touching, {"gap": 0.5, "contact": "required"}, [(rf"Bring the two surfaces {NUMBER} mm closer", by("gap", -1.0))]
     ),
     Case("E_FIT_CONTACT", touching, {"gap": 0.0, "contact": "forbidden"}, [(r"Move the two surfaces apart", lambda _k, _m: {"gap": 0.5})]),
+    Case("W_STATIC_OVERLAP", forced, {"bore": 10.0}, [(rf"Remove {NUMBER} mm from one of them where they meet", widened)]),
+    Case("E_MESH_OPEN", open_or_closed, {"closed": False}, [("[Rr]epair|[Cc]lose", lambda _k, _m: {"closed": True})]),
+    Case("E_NOT_CHECKED", spent, {"budget": 0.0, "lower": -0.5}, [("Raise the budget", lambda _k, _m: {"budget": None})]),
+    Case("E_NOT_CHECKED", proven_closed, {"closed": False}, [("Repair the named cause", lambda _k, _m: {"closed": True})]),
+    Case("W_NOT_CERTIFIED", pressed, {"pin": 5.1}, [("Add clearance to allow a proof", lambda _k, _m: {"pin": 4.9})]),
+    Case(
+        "W_NOT_CERTIFIED",
+        sliding,
+        {"far": math.inf, "bore": 10.4},
+        [("Give limits to a slide that has none", lambda _k, _m: {"far": 30.0})],
+    ),
     Case("W_FIT_UNRESOLVED", facing, {"deflection": 0.2}, [(rf"deflection of {NUMBER} mm", to("deflection"))]),
 ]
 
@@ -226,6 +283,7 @@ def test_each_number_of_a_hint_heals_its_finding(case: Case) -> None:
         assert match, found[0].hint
         after = case.made({**case.knobs, **change(case.knobs, match)})
         assert not said(after, found[0]), f"{found[0].hint}\n{after}"
+        assert not worse(case.made(case.knobs), after), f"{found[0].hint}\n{after}"
 
 
 def test_a_ball_too_large_for_its_socket_is_thinned_as_the_hint_says() -> None:

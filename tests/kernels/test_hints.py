@@ -19,6 +19,7 @@ from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache
 from tests.kernels.conftest import Build, frame
 from tests.kernels.test_seating import built, plan, script
+from tests.obedience import worse
 
 Fields = dict[str, Any]
 Follow = Callable[[Fields, re.Match[str]], Fields]
@@ -157,7 +158,7 @@ CASES = [
         "W_DIMENSION_UNUSED",
         "return Box(10, 9, 9) + Pos(0, 0, {up}) * Cylinder(1, d['w']), {{}}",
         {"up": "0"},
-        [("Let what it sizes reach the surface", text("up", "9"))],
+        [("Let what it sizes reach the surface", text("up", "4"))],
         {"dimensions": {"w": 4.0}},
         probe=True,
     ),
@@ -188,6 +189,7 @@ def test_a_script_changed_as_the_hint_says_has_the_finding_no_more(build: Build,
         assert match, found[0].hint
         after = outcome(build, case, {**case.fields, **change(case.fields, match)})
         assert not after.of(case.code), f"{found[0].hint}\n{after}"
+        assert not worse(outcome(build, case, case.fields), after), f"{found[0].hint}\n{after}"
 
 
 @pytest.mark.parametrize(

@@ -200,7 +200,7 @@ CASES = [
         "E_AXIS_ZERO",
         chest_with(lambda p: connector(p, "box", "hinge").update(z=[0, 0, 0])),
         "parts.box.connectors.hinge.z",
-        "such as (0, 0, 1)",
+        "such as (1, 0, 0)",
     ),
     Case(
         "E_AXIS_ZERO", chest_with(lambda p: part(p, "box").update(rest_pose={"axis": [0, 0, 0]})), "parts.box.rest_pose.axis", "[0, 0, 1]"

@@ -7,15 +7,23 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
+from articad.errors import PlanError
 from articad.findings import Finding
+from articad.findings.codes import CODES
 from articad.mcp.skill import skill
 from articad.plan.amending import amended
+from articad.plan.check import check_plan
+from articad.plan.schema import AssemblyPlan
 from articad_bench.obeying import followed
-from tests.plan.samples import Json, check, pair
+from tests.obedience import assert_heals, worse
+from tests.plan.samples import Json, check, chest, pair
 from tests.plan.test_check import CASES, TURNING, Case, gears_with
+from tests.plan.test_schema import changed
 
 MOST_STEPS = 10
 (FOUR_BAR,) = (json.loads(text) for text in re.findall(r"```json\n(.*?)```", skill(), re.DOTALL) if '"four_bar"' in text)
@@ -65,13 +73,55 @@ def test_each_change_that_a_hint_offers_heals_or_changes_its_finding(case: Case)
     finding = next(
         each for each in check(case.plan).of(case.code) if each.where == case.where and case.words in f"{each.message} {each.hint}"
     )
-    plans = followed(finding, case.plan)
+    plans = followed(finding, json.loads(json.dumps(case.plan)))  # a list of the case may hold one object twice
     assert plans, f"no rule for: {finding.hint}"
     for plan in plans:
         assert said([finding]).isdisjoint(said(list(check(plan)))), finding.hint
 
 
-OF_JUDGEMENT = {"W_CHIRAL", "E_DERIVE_CYCLE"}  # whether the other hand is meant; what a part is like that is not derived
+RANKS = [
+    {"E_NAME", "E_DUP_NAME"},
+    {"E_EXPRESSION", "E_EXPRESSION_CYCLE", "E_NONFINITE", "E_PARAMETER_BOUNDS", "E_MATERIAL_UNKNOWN", "E_COUNT", "E_DENSITY", "E_FRICTION"},
+    {"E_ENVELOPE_VALUE", "E_DERIVE_UNKNOWN", "E_DERIVE_CYCLE", "E_DERIVE_COUNT", "E_AXIS_ZERO", "E_AXIS_PARALLEL", "E_AXIS_NOT_ORTHOGONAL"},
+    {"E_LIMITS_MISSING", "E_LIMITS_ORDER", "E_LIMITS_KIND", "E_REST_OUTSIDE_LIMITS", "E_EFFORT", "E_LEAD_ZERO", "E_FIT", "E_ALLOW"},
+    {"E_PART_UNKNOWN", "E_CONNECTOR_UNKNOWN", "E_JOINT_UNKNOWN", "E_JOINT_SELF", "E_NO_GROUND", "E_NO_CONNECTORS", "E_DERIVE_JOINT"},
+    {"E_JOINT_DUP", "E_DISCONNECTED", "E_NOT_TREE", "E_REVERSE_UNSUPPORTED", "E_ENVIRONMENT", "E_REST_AUTO"},
+    {"E_MATE_OFFSET", "E_MATE_FLIP", "E_MATE_TILT", "E_MATE_ROLL", "E_SCALE", "E_COUPLING", "E_COUPLING_AXES", "E_COUPLING_RATIO"},
+    {"E_LOOP_OPEN", "E_LOOP_LOCKED", "E_COUPLING_LOCKED", "E_COUPLING_REST", "E_DRIVER", "E_DOF_MISMATCH"},
+    {"E_LOOP_LIMIT", "E_DEAD_POINT"},
+]
+"""In which order the check judges: what is wrong with a name, a number or a frame hides what later ones would say of it."""
+CHECKS_MORE = {"I_REST_AUTO"}  # its hint says how to have one more check, which then tells what it finds
+
+
+def rank(code: str) -> int:
+    return next((place for place, codes in enumerate(RANKS) if code in codes), len(RANKS))
+
+
+@pytest.mark.parametrize("case", [case for case in ALL if case.code not in CHECKS_MORE], ids=lambda case: f"{case.code}-{case.where}")
+def test_no_hint_advises_what_another_code_refuses(case: Case) -> None:
+    """A change that a hint offers brings no error, but for those that the plan's own fault had hidden from the check."""
+    if case.code in OF_JUDGEMENT:
+        pytest.skip(OF_JUDGEMENT[case.code])
+    plan = json.loads(json.dumps(case.plan))
+    finding = next(each for each in check(plan).of(case.code) if each.where == case.where and case.words in f"{each.message} {each.hint}")
+    for after in followed(finding, plan):
+        new = [one for one in worse(check(plan), check(after)) if rank(one.code) <= rank(case.code)]
+        assert not new, f"{finding.hint}\n{new}"
+
+
+def test_every_error_of_a_plan_has_its_place_in_the_order_of_the_check() -> None:
+    """A code without a place would be taken for one that nothing hides."""
+    said = {code for code, entry in CODES.items() if code.startswith("E_") and entry.stage in ("plan", "motion")}
+    elsewhere = {"E_SCHEMA", "E_PARAMETER_UNKNOWN", "E_NOT_SUPPORTED", "E_LEFT_HANDED", "E_NOT_ROTATION", "E_QUAT_NORM"}
+    questions = {"E_MOTION_COLLISION", "E_NO_PATH", "E_REACH_BARRED", "E_NOT_FOLLOWED", "E_SINGULAR"}
+    assert set.union(*RANKS) == said - elsewhere - questions
+
+
+OF_JUDGEMENT = {
+    "W_CHIRAL": "Whether the other hand is meant, and where the part stands then, only the designer knows.",
+    "E_DERIVE_CYCLE": "What a part is like that is not derived, only the designer knows.",
+}
 
 
 @pytest.mark.parametrize("case", [case for case in ALL if case.code not in OF_JUDGEMENT], ids=lambda case: f"{case.code}-{case.where}")
@@ -90,6 +140,72 @@ def test_hints_followed_one_after_another_lead_to_a_sound_plan_and_never_back(ca
             seen.append(after)
             ways += [way, [*way, after]]
     raise AssertionError("\n".join(map(str, faults(start))))
+
+
+Right = Callable[[re.Match[str]], Any]
+MISSPELT: list[tuple[tuple[str | int, ...], Any, str, Right]] = [
+    (("schema",), "articad.plan/2", r"Give (\"[\w./]+\")", lambda match: json.loads(match[1])),
+    (("kernel",), "openscad", r"Give (\"\w+\") or", lambda match: json.loads(match[1])),
+    (("parameters", 0, "unit"), "cm", r"Give (\"\w+\")", lambda match: json.loads(match[1])),
+    (("materials", 0, "color"), "brown", r"#rrggbb", lambda _match: "#804000"),
+    (("freedoms",), 1.5, "a whole number of at least 0", lambda _match: 1),
+    (("tree",), "yes", "Give true or false", lambda _match: False),
+    (("parts", 0, "connectors", 0, "kind"), "hinge", r"Did you mean '(\w+)'", lambda match: match[1]),
+    (("joints", 0, "mate"), "opposite", r"Give (\"\w+\") or", lambda match: json.loads(match[1])),
+    (("joints", 0, "type"), "revolve", r"Did you mean '(\w+)'", lambda match: match[1]),
+    (("joints", 0, "type"), "hinge", r"Here it is called (\w+)\.", lambda match: match[1]),
+    (("joints", 0, "type"), ..., r"Valid: fixed, (\w+)", lambda match: match[1]),
+    (("joints", 0, "angle_deg"), 90, r"Give \[lower, upper\]", lambda _match: [0, 90]),
+    (("joints", 0, "parent"), "box", "part.connector", lambda _match: "box.hinge"),
+    (("parts", 1, "rest_pose"), "automatic", r"or (\"auto\")", lambda match: json.loads(match[1])),
+    (("ground",), ..., "Add 'ground': The part that does not move", lambda _match: "box"),
+    (("description",), None, "text in quotes", lambda _match: "A chest."),
+    (("units",), "mm", "Allowed here: schema, name", lambda _match: ...),
+    (("parts", 0, "connectors", 0, "naem"), "x", r"Did you mean 'name'\?", lambda _match: ...),
+]
+"""A place of the chest, what stands there instead, the words of the hint, and what its reader writes there; ... is nothing."""
+
+
+def told(document: Json) -> list[Finding]:
+    try:
+        return list(check_plan(AssemblyPlan.from_json(document)))
+    except PlanError as error:
+        return list(error.findings)
+
+
+@pytest.mark.parametrize(
+    ("path", "wrong", "words", "right"), MISSPELT, ids=lambda value: ".".join(map(str, value)) if isinstance(value, tuple) else ""
+)
+def test_a_plan_of_the_wrong_form_is_read_when_its_hint_is_followed(
+    path: tuple[str | int, ...], wrong: Any, words: str, right: Right
+) -> None:
+    before = told(changed(*path, value=wrong))
+    finding = next(one for one in before if one.code == "E_SCHEMA" and re.search(words, one.hint))
+    match = re.search(words, finding.hint)
+    assert match
+    value = right(match)
+    assert_heals(finding, before, told(chest() if value is ... else changed(*path, value=value)))
+
+
+JSON_ERRORS = {
+    "no comma before": ('{"schema": "articad.plan/1",}', '{"schema": "articad.plan/1"}'),
+    "keys and texts in double quotes": ("{'schema': 1}", '{"schema": "articad.plan/1"}'),
+    "Remove one of them": ('{"name": "a", "name": "b"}', '{"name": "a"}'),
+}
+
+
+@pytest.mark.parametrize("words", JSON_ERRORS)
+def test_a_text_that_is_no_json_is_read_when_its_hint_is_followed(words: str) -> None:
+    def read(text: str) -> list[Finding]:
+        try:
+            AssemblyPlan.loads(text)
+        except PlanError as error:
+            return list(error.findings)
+        return []
+
+    fault, mended = JSON_ERRORS[words]
+    finding = next(one for one in read(fault) if words in one.hint)
+    assert not [one for one in read(mended) if one.message == finding.message]
 
 
 FORMS: dict[str, Json] = {

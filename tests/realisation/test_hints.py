@@ -10,6 +10,7 @@ from build123d import Box, Cylinder, Pos, Sphere
 
 from articad.certificates.fits import check_fits
 from articad.plan.resolve import Fit
+from tests.obedience import worse
 from tests.realisation.test_bores import scene
 from tests.realisation.test_verdicts import BALL, carriage, hinge, judged, socket
 
@@ -75,7 +76,9 @@ def test_a_joint_made_as_the_hint_says_is_found_no_more(case: Any) -> None:
     assert found
     for words, (mended, span) in ways.items():
         assert words in found[0].hint
-        assert not judged(mended, kind, **span)[1].findings.of(code)
+        after = judged(mended, kind, **span)[1].findings
+        assert not after.of(code)
+        assert not worse(judged(shapes, kind, **limits)[1].findings, after)
 
 
 @pytest.mark.parametrize("bore", [10.005, 16.01])
