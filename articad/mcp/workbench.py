@@ -133,10 +133,7 @@ class Workbench:
         return document
 
     def _expanded(self, name: str, document: dict[str, Any]) -> dict[str, Any]:
-        try:
-            plan = dict(expanded(document))
-        except (TypeError, KeyError, AttributeError, ValueError) as error:
-            raise ReadError.at(name, f"The short plan of {name!r} has not the form of one.", "Run check_plan.") from error
+        plan: dict[str, Any] = expanded(document)
         for key in ("parameters", "parts", "joints"):
             rows = plan.get(key, [])
             if not isinstance(rows, list) or not all(isinstance(row, dict) and isinstance(row.get("name"), str) for row in rows):

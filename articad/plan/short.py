@@ -78,6 +78,14 @@ def _objects(entries: Any) -> list[Json]:
     return [entry for entry in entries if isinstance(entry, dict)] if isinstance(entries, list) else []
 
 
+def _by_name(entries: Any) -> dict[str, Json]:
+    return {entry["name"]: entry for entry in _objects(entries) if isinstance(entry.get("name"), str)}
+
+
+def _is_vector(stated: Any) -> bool:
+    return isinstance(stated, list) and len(stated) == 3
+
+
 def _whole(name: str, value: Any) -> Any:
     return {"name": name} | value if isinstance(value, dict) else value
 
@@ -129,8 +137,8 @@ class _Joints:
     """Joints that state their place once, and standard joints: they add connectors and dimensions to their parts."""
 
     def __init__(self, plan: Json) -> None:
-        self.parts = {str(part.get("name")): part for part in _objects(plan["parts"])}
-        self.joints = {str(joint.get("name")): joint for joint in _objects(plan["joints"])}
+        self.parts = _by_name(plan["parts"])
+        self.joints = _by_name(plan["joints"])
         self._places: dict[str, Json] = {}  # of joints that state one
 
     def place(self) -> None:
@@ -139,7 +147,7 @@ class _Joints:
             if "derive" in joint:
                 self._derived(joint)
                 continue
-            if joint.get("type") in STANDARD:
+            if isinstance(kind := joint.get("type"), str) and kind in STANDARD:
                 self._standard(joint)
             stated = joint.get("at")
             frame = self._places.get(stated) if isinstance(stated, str) else _frame(stated)
@@ -155,7 +163,7 @@ class _Joints:
         for side, dimensions in features.items():
             part = self.parts.get(str(joint.get(side, "")).partition(".")[0], {})
             if "derive" not in part and isinstance(held := part.setdefault("dimensions", {}), dict):
-                connector = str(joint[side]).partition(".")[2] or joint["name"]
+                connector = str(joint.get(side, "")).partition(".")[2] or joint["name"]
                 held.update({f"{connector}_{key}": value for key, value in dimensions.items()})
 
     def _attach(self, joint: Json, side: str, frame: Json) -> None:
@@ -224,23 +232,22 @@ def _image(frame: Json | None, derive: Any) -> Json | None:
     """Return a place moved as a copy is moved: by a plane across an axis, or by a shift; None for other motions."""
     if frame is None or not isinstance(derive, dict):
         return None
-    if derive.get("op") == "mirror" and isinstance(plane := derive.get("plane"), dict):
-        normal = plane.get("normal")
-        if not isinstance(normal, list) or sorted(map(str, normal)) not in (["0", "0", "1"], ["-1", "0", "0"]):
+    image = {key: [*vector] for key, vector in frame.items() if key in "ozx" and _is_vector(vector)}
+    if not {"o", "z"} <= image.keys():
+        return None
+    plane, move = derive.get("plane"), derive.get("move")
+    if derive.get("op") == "mirror" and isinstance(plane, dict):
+        normal, through = plane.get("normal"), plane.get("point", [0, 0, 0])
+        if not _is_vector(through) or not isinstance(normal, list) or sorted(map(str, normal)) not in (["0", "0", "1"], ["-1", "0", "0"]):
             return None
-        axis = next(index for index, value in enumerate(normal) if value)
-        point = plane.get("point", [0, 0, 0])[axis]
-        image = {key: [*vector] for key, vector in frame.items() if key in "ozx"}
+        axis = next(index for index, value in enumerate(normal) if str(value) != "0")
         for vector in image.values():
             vector[axis] = _negative(vector[axis])
-        if point not in (0, "0"):
+        if (point := through[axis]) not in (0, "0"):
             image["o"][axis] = f"2*({point})+({image['o'][axis]})"
         return image
-    move = derive.get("move")
-    if derive.get("op") == "rigid" and isinstance(move, dict) and set(move) <= {"at"}:
-        shift = move.get("at", [0, 0, 0])
-        image = {key: [*vector] for key, vector in frame.items() if key in "ozx"}
-        image["o"] = [a if b in (0, "0") else f"({a})+({b})" for a, b in zip(image["o"], shift, strict=False)]
+    if derive.get("op") == "rigid" and isinstance(move, dict) and set(move) <= {"at"} and _is_vector(shift := move.get("at", [0, 0, 0])):
+        image["o"] = [a if b in (0, "0") else f"({a})+({b})" for a, b in zip(image["o"], shift, strict=True)]
         return image
     return None
 
@@ -254,7 +261,7 @@ def _declare_materials(plan: Json) -> None:
     declared = plan.setdefault("materials", [])
     if not isinstance(declared, list):
         return
-    known = {entry.get("name") for entry in _objects(declared)}
+    known = _by_name(declared)
     named = dict.fromkeys(str(part.get("material")) for part in _objects(plan["parts"]))
     for name in named:
         if name in MATERIALS and name not in known:

@@ -39,7 +39,11 @@ def made_of(joint: Json) -> dict[str, dict[str, Any]]:
     size = joint.pop({"drawer_slide": "bar_mm", "ball_socket": "ball_mm"}.get(kind, "pin_mm"), None)
     length, depth = joint.pop("length_mm", None), joint.pop("depth_mm", None)
     clearance = joint.pop("clearance_mm", 0 if kind == "dowel" else CLEARANCE_MM)
-    inner = joint.pop("pin_on", "parent")
+    inner = joint.get("pin_on", "parent")
+    if inner in ("parent", "child"):
+        joint.pop("pin_on", None)
+    else:  # stays, and reading the plan reports it
+        inner = "parent"
     outer = "child" if inner == "parent" else "parent"
     pin: dict[str, Any]
     hole: dict[str, Any]

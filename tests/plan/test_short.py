@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import json
 import math
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from articad import Assembly
+from articad.errors import PlanError
 from articad.geometry.mass import MassProperties
 from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
@@ -222,6 +226,73 @@ def test_what_is_wrong_in_a_short_plan_is_reported_at_its_address() -> None:
     plan["joints"]["swing"]["angle_deg"] = ["nothing", 0]
     found = {(finding.code, finding.where) for finding in check_plan(AssemblyPlan.from_json(plan))}
     assert {("E_MATERIAL_UNKNOWN", "parts.leaf.material"), ("E_EXPRESSION", "joints.swing.angle_deg[0]")} <= found
+
+
+ODD = (None, 0, 1.5, "", "a.b", [], [1], [[1]], ["parent"], {}, {"a": 1}, True, "hinge", [0, 0, "0"])
+ADDED = (
+    "derive",
+    "name",
+    "type",
+    "parent",
+    "child",
+    "at",
+    "dimensions",
+    "connectors",
+    "material",
+    "angle_deg",
+    "pin_on",
+    "fit",
+    "groove_mm",
+)
+MOVES = (
+    {"from": "swing", "op": "mirror"},
+    {"from": "leaf", "op": "mirror", "plane": {"normal": [1, 0, 0], "point": 3}},
+    {"from": "leaf", "op": "rigid", "move": {"at": 5}},
+    {"from": "leaf", "op": "rigid", "move": {"at": ["a", None, 2]}},
+)
+
+
+def places(value: Any, *path: Any) -> Iterator[tuple[Any, ...]]:
+    """Yield where there is anything in a document, by its keys."""
+    for key in value if isinstance(value, dict) else range(len(value)) if isinstance(value, list) else ():
+        yield (*path, key)
+        yield from places(value[key], *path, key)
+
+
+@pytest.mark.parametrize("plan", [GATE, CLEVIS], ids=["gate", "clevis"])
+def test_whatever_a_short_plan_holds_is_a_plan_or_is_reported_where_it_is(plan: Json) -> None:
+    """The short form itself refuses nothing: what it does not understand is left for the plan's own form to report."""
+    tried = [(path, value) for path in places(plan) for value in (*ODD, *MOVES)]
+    tried += [((*path, name), value) for path in places(plan) if len(path) == 2 for name in ADDED for value in (*ODD, *MOVES)]
+    for path, value in tried:
+        changed = copy.deepcopy(plan)
+        holder = changed
+        for key in path[:-1]:
+            holder = holder[key]
+        if path == ("schema",) or not isinstance(holder, dict | list):
+            continue
+        holder[path[-1]] = copy.deepcopy(value)
+        with contextlib.suppress(PlanError):
+            AssemblyPlan.from_json(changed)
+
+
+def test_a_side_that_is_a_list_is_reported_at_its_address() -> None:
+    plan = copy.deepcopy(GATE)
+    plan["joints"]["swing"]["pin_on"] = ["parent"]
+    with pytest.raises(PlanError) as refused:
+        AssemblyPlan.from_json(plan)
+    assert [finding.where for finding in refused.value.findings] == ["joints.swing.pin_on"]
+
+
+def test_a_mirror_plane_of_texts_is_that_of_numbers() -> None:
+    plan = copy.deepcopy(GATE)
+    plan["parts"]["twin"]["derive"]["plane"]["normal"] = ["0", "0", "1"]
+    numbers = copy.deepcopy(GATE)
+    numbers["parts"]["twin"]["derive"]["plane"]["normal"] = [0, 0, 1]
+    first, second = (expanded(each)["joints"] for each in (plan, numbers))
+    assert first == second
+    places_of = [[c for part in expanded(each)["parts"] for c in part.get("connectors", [])] for each in (plan, numbers)]
+    assert places_of[0] == places_of[1]
 
 
 def test_the_short_wardrobe_is_the_wardrobe_of_the_examples_in_two_fifths_of_the_characters() -> None:
