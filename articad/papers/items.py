@@ -27,7 +27,7 @@ class Item:
         material: None if it is not known.
         masses_kg: Mass of each part; None where it is not known.
         size_mm: Extent along x, y and z of the part's own frame; None for a part without geometry.
-        supply: `purchased` if the user named it so, else `made`.
+        supply: `purchased` if the user named it so, or a joint states that its two parts are bought as one; else `made`.
         description: What it is for.
         note: What distinguishes it from another item.
     """
@@ -71,7 +71,8 @@ def items_of(assembly: Assembly, purchased: Iterable[str] = ()) -> tuple[Item, .
 
     Args:
         assembly: The product.
-        purchased: Names of parts that are bought, with `*` and `?` as wildcards.
+        purchased: Names of parts that are bought, with `*` and `?` as wildcards, beside the two parts of each joint whose fastening is
+            `purchased`.
 
     Raises:
         ArticadError: If one of these names is that of no part.
@@ -84,19 +85,21 @@ def items_of(assembly: Assembly, purchased: Iterable[str] = ()) -> tuple[Item, .
                 f"--purchased {pattern}: no part has this name.{did_you_mean(pattern, product.parts)} Parts: {', '.join(product.parts)}."
             )
             raise ArticadError(message, stage="export")
+    pairs = [(joint.parent, joint.child) for joint in product.mechanism.joints if joint.fastening == "purchased"]
+    bought = {name for name in product.parts if any(fnmatchcase(name, pattern) for pattern in patterns)}.union(*pairs)
     groups: list[list[Part]] = []
     for part in product.parts.values():
         for group in groups:
-            if group[0].material == part.material and _bought(group[0], patterns) == _bought(part, patterns) and _alike(group[0], part):
+            if group[0].material == part.material and (group[0].name in bought) == (part.name in bought) and _alike(group[0], part):
                 group.append(part)
                 break
         else:
             groups.append([part])
     numbers = {part.name: number for number, group in enumerate(groups, start=1) for part in group}
-    return tuple(_item(product, number, group, patterns, numbers) for number, group in enumerate(groups, start=1))
+    return tuple(_item(product, number, group, bought, numbers) for number, group in enumerate(groups, start=1))
 
 
-def _item(product: Assembly, number: int, group: list[Part], purchased: tuple[str, ...], numbers: dict[str, int]) -> Item:
+def _item(product: Assembly, number: int, group: list[Part], bought: set[str], numbers: dict[str, int]) -> Item:
     first = group[0]
     size = None if first.mesh is None else tuple(float(length) for length in first.mesh.bounds[1] - first.mesh.bounds[0])
     if first.solid is not None:
@@ -114,14 +117,10 @@ def _item(product: Assembly, number: int, group: list[Part], purchased: tuple[st
         material=first.material,
         masses_kg=tuple(None if part.mass is None else part.mass.mass for part in group),
         size_mm=size,  # type: ignore[arg-type]
-        supply="purchased" if _bought(first, purchased) else "made",
+        supply="purchased" if first.name in bought else "made",
         description=" ".join(told.split()),
         note=note,
     )
-
-
-def _bought(part: Part, purchased: tuple[str, ...]) -> bool:
-    return any(fnmatchcase(part.name, pattern) for pattern in purchased)
 
 
 def _alike(a: Part, b: Part) -> bool:

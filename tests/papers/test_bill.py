@@ -62,6 +62,14 @@ def test_bought_parts_are_named_by_the_user_and_a_name_of_no_part_is_refused() -
         items_of(shelf(), ["lo"])
 
 
+def test_two_parts_that_a_joint_says_are_bought_as_one_are_bought() -> None:
+    assembly = shelf()
+    joints = [replace(joint, fastening="purchased") if joint.name == "peg" else joint for joint in assembly.mechanism.joints]
+    bought = Assembly.from_parts("shelf", parts=[*assembly.parts.values()], joints=joints, ground="side", T_ground=SE3.identity())
+    assert {item.name for item in items_of(bought) if item.supply == "purchased"} == {"side", "=peg"}
+    assert {item.name for item in items_of(bought, ["top"]) if item.supply == "purchased"} == {"side", "top", "=peg"}
+
+
 def test_csv_and_xlsx_hold_the_same_cells_and_compute_nothing_that_a_name_says() -> None:
     pytest.importorskip("xlsxwriter")
     assembly = shelf()
