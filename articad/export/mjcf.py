@@ -95,7 +95,7 @@ def write_mjcf(
         UnrepresentableError: If `strict` and there is such a loss.
     """
     again = Again(assembly)
-    model = lower(assembly, () if again.active or _starts_at_world(assembly) else RESERVED, as_it_came=assembly.foreign)
+    model = _lowered(assembly, again)
     contacts: tuple[HullOverlap, ...] = ()
     if not (again.active and kind_of(assembly, collision) == "solid"):  # the file decides what collides in it
         model, contacts = collide(assembly, model, collision, _skipped(assembly), cache)
@@ -126,13 +126,17 @@ def rewritten(assembly: Assembly) -> Iterator[tuple[list[Any], dict[str, str]]]:
     choices: tuple[Actuators | None, ...] = (None, "position")  # "motor" writes the same rotors
     for actuators in choices:
         again = Again(assembly)
-        model = lower(assembly, () if again.active or _starts_at_world(assembly) else RESERVED, as_it_came=assembly.foreign)
+        model = _lowered(assembly, again)
         writer = _Writer(assembly, model, MeshFiles(), again)
         root = writer.content((), actuators=actuators)
         yield (
             mechanism_elements(root),
             {writer.assets[path]: digest for digest, path in writer.files.by_digest.items() if path in writer.assets},
         )
+
+
+def _lowered(assembly: Assembly, again: Again) -> LoweredModel:
+    return lower(assembly, () if again.active or _starts_at_world(assembly) else RESERVED, as_it_came=assembly.foreign)
 
 
 def _starts_at_world(assembly: Assembly) -> bool:

@@ -81,7 +81,7 @@ def write_sdf(
         UnrepresentableError: If `strict` and there is such a loss.
     """
     kind = kind_of(assembly, collision)
-    lowered = lower(assembly, () if ground_is_world(assembly) else RESERVED, part_frames=assembly.foreign)
+    lowered = _lowered(assembly)
     model = shape_model(assembly, lowered, kind, cache)
     features = [*model.features, *([Feature("loop.rest", "joints")] if model.loops else [])]
     writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind != "solid", cache=cache))
@@ -102,9 +102,13 @@ def mechanism_elements(root: Any) -> list[Any]:
 
 def rewritten(assembly: Assembly) -> Iterator[tuple[list[Any], dict[str, str]]]:
     """Yield what `write_sdf` states of the mechanism, and the digests of the meshes by name."""
-    lowered = lower(assembly, () if ground_is_world(assembly) else RESERVED, part_frames=assembly.foreign)
+    lowered = _lowered(assembly)
     writer = _Writer(assembly, lowered, MeshFiles())
     yield mechanism_elements(writer.document()), writer.files.names()
+
+
+def _lowered(assembly: Assembly) -> LoweredModel:
+    return lower(assembly, () if ground_is_world(assembly) else RESERVED, part_frames=assembly.foreign)
 
 
 class _Kept:
