@@ -2,12 +2,18 @@
 
 Joints are held and driven by computed torque: `τ = M (ω² e - 2 ω v) + bias`, with e limited so that an obstacle is pushed but not
 penetrated. Where other joints follow by loops and couplings with the Jacobian J, the inertia that the driven joints S feel at rest replaces M:
-`(S P Sᵀ)⁻¹` with `P = M⁻¹ - M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ J M⁻¹` (Gauss's principle: the accelerations that the constraints permit). A model's own actuators are switched off. Everything runs in a process of its own (`articad.simulation.trial`), because files
-are untrusted.
+`(S P Sᵀ)⁻¹` with `P = M⁻¹ - M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ J M⁻¹` (Gauss's principle: the accelerations that the constraints permit). A model's own actuators are switched off.
+
+Free bodies may rest on what joints hold, or joints may hold up a body that floats, as legs do. Then the held joints get rotors that match its mass, and
+the torque that its weight causes is added to theirs. It is measured while the joints are locked and the free bodies settle, less what the same
+contacts still press without gravity: an overlap pushes as before.
+
+Everything runs in a process of its own (`articad.simulation.trial`), because files are untrusted.
 """
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -26,6 +32,12 @@ from articad.simulation.verdict import EngineOutcome, FilmFrame, JointReach, Rol
 STIFFNESS = 20.0  # ω of the controller [1/s]: a tenth of a second to arrive
 MOST_ERROR = 0.2  # rad or m: largest error on which the controller acts
 HOLD_S = 1.0
+SETTLE_S = 2.0  # for free bodies to come to rest on locked joints
+WEIGHTLESS_S = 0.5  # for weights to leave their supports
+LEAST_SETTLE_S = 0.1
+STILL = 1e-3  # rad/s or m/s of everything: settled
+LEAST_ARM_M = 0.05  # 2 g/ω²: a hinge with a rotor of this arm holds a mass up that stands on it at any height
+LOCKING = 1e6  # kg or kg·m², added to a joint's own inertia
 MOST_STEPS = 20_000  # of a stroke: 40 s at MuJoCo's default time step
 FREE_S = 1.0
 IMPACT_S = 0.3  # until an impact in loops and couplings has decayed
@@ -58,6 +70,7 @@ class Trial:
     rest: Mapping[str, float] = field(default_factory=dict)
     mimics: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
     felt: FloatArray | None = None
+    load: FloatArray | None = None
     longest: dict[int, float] = field(default_factory=dict)  # range of a hinge that one stroke covers [rad], by joint
 
     @classmethod
@@ -112,9 +125,15 @@ class Trial:
     # ------------------------------------------------------------------ phases
 
     def _hold(self) -> None:
-        """Hold every joint at rest against gravity and contact."""
+        """Hold every joint at rest against gravity and contact, and what rests on it."""
+        held, own = self._hinged_dofs(), self.model
+        self.model = self._carry(held)
+        self._stand(held)
+        self.model, self.load = own, None
+
+    def _stand(self, held: NDArray[np.int_]) -> None:
+        """Hold these degrees of freedom, and measure."""
         steps, calm = self._steps(HOLD_S), 0.0
-        held = self._hinged_dofs()
         for step in range(steps):
             if not self._step(self.start, held):
                 return
@@ -123,8 +142,76 @@ class Trial:
         self.outcome.speed_at_rest = calm
         moved = self._error(self.start)[held]
         self.outcome.moved_at_rest = float(np.abs(moved).max(initial=0.0))
-        rows = self.data.efc_type[: self.data.nefc] == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+        rows = self._equalities()
         self.outcome.residual = float(np.abs(self.data.efc_pos[: self.data.nefc][rows]).max(initial=0.0)) if self.model.neq else 0.0
+
+    def _carry(self, held: NDArray[np.int_]) -> Any:
+        """Let free bodies settle on locked joints; set the load that the joints feel, and return the model with joints heavy enough for it."""
+        model, data = self.model, self.data
+        if len(held) in {0, model.nv}:
+            return model
+        self.model, settled = _heavier(model, held, LOCKING), mujoco.MjData(model)
+        resting = self._settled(held, SETTLE_S)
+        mujoco.mj_copyData(settled, model, data)
+        self.model.opt.gravity[:] = 0.0
+        pressing = self._settled(held, WEIGHTLESS_S)
+        self.model = model
+        mujoco.mj_copyData(data, model, settled)
+        mujoco.mj_forward(model, data)
+        rotors = self._matching(held)
+        if self.outcome.exploded or not rotors.any():
+            self.reset()
+            return model
+        self.load = resting - pressing
+        return _heavier(model, held, rotors)
+
+    def _matching(self, held: NDArray[np.int_]) -> FloatArray:
+        """Return the inertia, per held degree of freedom, of all that floats if its mass moved with the bodies that bear it [kg or kg·m²]."""
+        floating = [body for body in range(self.model.nbody) if self._floats(body)]
+        bearing = {int(body) for index in self._supporting() for body in self.model.geom_bodyid[self.data.contact[index].geom]}
+        squares, jacobian = np.zeros(len(held)), np.zeros((3, self.model.nv))
+        for body in bearing:
+            for other in floating:
+                mujoco.mj_jac(self.model, self.data, jacobian, None, self.data.subtree_com[other], body)
+                squares = np.maximum(squares, (jacobian[:, held] ** 2).sum(axis=0))
+        mass = float(self.model.body_subtreemass[floating].sum())
+        return np.where(squares > 0, mass * (squares + LEAST_ARM_M**2), 0.0)
+
+    def _settled(self, held: NDArray[np.int_], seconds: float) -> FloatArray:
+        """Step with held joints until nothing moves; return the torque that holds what rests on them, per degree of freedom."""
+        for step in range(self._steps(seconds)):
+            if not self._step(self.start, held) or (step >= self._steps(LEAST_SETTLE_S) and np.abs(self.data.qvel).max() < STILL):
+                break
+        rows = self._supports()
+        return np.asarray(-self._jacobian(rows).T @ self.data.efc_force[: self.data.nefc][rows])
+
+    def _supporting(self) -> list[int]:
+        """Return the contacts that bear a body that floats, or what it carries."""
+        roots = self.model.body_rootid[self.model.geom_bodyid[self.data.contact.geom]]
+        return [index for index, pair in enumerate(roots.reshape(-1, 2)) if any(self._floats(int(root)) for root in pair)]
+
+    def _supports(self) -> NDArray[np.bool_]:
+        """Return which constraints are those contacts."""
+        found = np.zeros(self.data.nefc, dtype=bool)
+        starts = sorted(int(contact.efc_address) for contact in self.data.contact)
+        for index in self._supporting():
+            first = int(self.data.contact[index].efc_address)
+            if first >= 0:
+                found[first : next((start for start in starts if start > first), self.data.nefc)] = True
+        return found
+
+    def _floats(self, body: int) -> bool:
+        """True for a body with a free joint."""
+        joint = int(self.model.body_jntadr[body])
+        return joint >= 0 and self.model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_FREE)
+
+    def _equalities(self) -> NDArray[np.bool_]:
+        """Return which constraints are equalities."""
+        return np.asarray(self.data.efc_type[: self.data.nefc] == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY))
+
+    def _jacobian(self, rows: NDArray[np.bool_]) -> FloatArray:
+        """Return the Jacobian of some of the constraints, `(rows, nv)`."""
+        return np.asarray(self.data.efc_J).reshape(-1, self.model.nv)[: self.data.nefc][rows]
 
     def _drive(self, drivers: tuple[str, ...] | None, opened: frozenset[str]) -> None:
         """Drive each hinge and slide over its range; in a loop only its drivers, with the rest of the loop free to follow.
@@ -278,6 +365,8 @@ class Trial:
                 mujoco.mj_mulM(model, data, torque, wanted)
             weight = data.qfrc_bias - data.qfrc_passive
             data.qfrc_applied[held] = torque[held] + weight[held]
+            if self.load is not None:
+                data.qfrc_applied[held] += self.load[held]
             following = sorted(free or ())  # joints of the same loop follow, they are not controlled
             data.qfrc_applied[following] = weight[following]
         mujoco.mj_step2(model, data)
@@ -308,8 +397,7 @@ class Trial:
         mass = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, mass)
         inverse = np.linalg.inv(mass)
-        rows = data.efc_type[: data.nefc] == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
-        J = np.asarray(data.efc_J).reshape(-1, model.nv)[: data.nefc][rows]
+        J = self._jacobian(self._equalities())
         return inverse - inverse @ J.T @ np.linalg.pinv(J @ inverse @ J.T, rcond=1e-9, hermitian=True) @ J @ inverse, inverse
 
     def _gearing(self, joint: int) -> float:
@@ -407,3 +495,12 @@ class Trial:
 
     def _name(self, joint: int) -> str:
         return self.model.joint(joint).name or f"joint_{joint}"
+
+
+def _heavier(model: Any, held: NDArray[np.int_], inertia: FloatArray | float) -> Any:
+    """Return a copy of a model with more inertia at the held joints, as of rotors [kg or kg·m²]."""
+    heavier = copy.copy(model)
+    heavier.dof_armature[held] += inertia
+    mujoco.mj_setConst(heavier, mujoco.MjData(heavier))
+    heavier.eq_data[:] = model.eq_data  # which it computes from the pose at zero
+    return heavier
