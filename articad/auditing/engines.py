@@ -24,13 +24,14 @@ _CAUSES: Final = (
     (r"No valid root|two parents|multiple|root link", "structure", "Give the file one root link."),
     (r"mesh volume is too small|volume", "mesh_flat", "Give the mesh a thickness."),
     (r"qhull|coplanar", "mesh_flat", "Give the mesh a thickness, or use a box for collision."),
-    (r"did not finish within", "time", "Use fewer or smaller meshes."),
 )  # fmt: skip
 
 
 def refusals(loadings: Iterable[Loading]) -> Iterator[Finding]:
     """Yield a finding for each engine that does not load the file."""
     for loading in loadings:
+        if loading.late is not None:
+            yield _unfinished(loading)
         if loading.loads is not False:
             continue
         cause, hint = next(
@@ -44,3 +45,13 @@ def refusals(loadings: Iterable[Loading]) -> Iterator[Finding]:
             hint=hint,
             cause=cause,
         )
+
+
+def _unfinished(loading: Loading) -> Finding:
+    return Finding(
+        code="W_AUDIT_ENGINE",
+        where=loading.engine,
+        message=f"Whether {NAMES[loading.engine]} loads the file is not known: {loading.message}.",
+        hint="Use fewer or smaller meshes, or try again while the machine does less.",
+        cause="time",
+    )

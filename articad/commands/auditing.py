@@ -103,7 +103,7 @@ def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
     rows = [
         (
             outcome.engine,
-            {True: "yes", False: "no", None: "not installed"}[outcome.loads],
+            "not finished" if outcome.late is not None else {True: "yes", False: "no", None: "not installed"}[outcome.loads],
             f"{outcome.speed_at_rest:.3g}",
             f"{100 * min((reach.share for reach in outcome.judged), default=1.0):.3g} % of {len(outcome.judged)}",
             f"{1000 * outcome.residual:.3g}",

@@ -823,6 +823,9 @@ CODES: dict[str, Code] = {
     ),
     "E_AUDIT_NOT_SOLID": Code("audit", None, "A part of a STEP file is not a valid closed solid.", "Repair it in CAD."),
     "E_SIM_LOAD": Code("audit", None, "A simulator does not load the model.", "Audit the file: `articad audit`."),
+    "W_SIM_NOT_TRIED": Code(
+        "audit", None, "A simulator was stopped before it had finished.", "Simulate the file with more time: `articad sim --seconds`."
+    ),
     "E_SIM_EXPLODES": Code(
         "audit", None, "Numbers in a simulation grow without bound.", "Audit the file for overlap and inertias; use a smaller time step."
     ),

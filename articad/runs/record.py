@@ -124,7 +124,9 @@ def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: boo
 
 def record_objections(run: Run, format_name: str, findings: Findings) -> None:
     """Add what a simulator says against an export to the export's report, and to the trace that it was asked."""
-    run.trace("note", where=f"export.{format_name}", message="loaded and held at rest in MuJoCo", ok=findings.ok)
+    tried = "W_SIM_NOT_TRIED" not in findings.codes
+    message = "loaded and held at rest in MuJoCo" if tried else "not tried in MuJoCo, which did not finish in time"
+    run.trace("note", where=f"export.{format_name}", message=message, ok=findings.ok)
     if findings:
         report = {key: value for key, value in run.exports()[format_name].items() if key not in {"folder", "main"}}
         said = report["findings"] + [finding.to_json() for finding in findings]

@@ -41,11 +41,12 @@ class Loading:
     Attributes:
         engine: Its name.
         version: Its version; "" if it is not installed.
-        loads: Whether it loaded the file; None if it is not installed.
+        loads: Whether it loaded the file; None if it is not installed or did not finish.
         message: The engine's own message, if it did not.
         simple: MuJoCo: bodies with a colliding box, sphere, capsule, cylinder or ellipsoid.
         excluded: MuJoCo: pairs of bodies that masks or exclusions keep from colliding.
         mass: MuJoCo: mass of everything that moves [kg].
+        late: Time after which it was stopped [s].
     """
 
     engine: Engine
@@ -55,6 +56,7 @@ class Loading:
     simple: tuple[str, ...] = ()
     excluded: tuple[tuple[str, str], ...] = ()
     mass: float | None = None
+    late: float | None = None
 
     def to_json(self) -> dict[str, Any]:
         """Return the row of a report."""
@@ -94,7 +96,7 @@ def places(path: Path, root: Path | None) -> tuple[str, str]:
 
 def _answer(engine: Engine, ended: launcher.Ended, seconds: float) -> Loading:
     if ended.late:
-        return Loading(engine, "?", loads=False, message=f"it did not finish within {seconds:g} s")
+        return Loading(engine, "?", message=f"it did not finish within {seconds:g} s", late=seconds)
     try:
         answer = answer_in(ended.out)
     except (ValueError, IndexError):

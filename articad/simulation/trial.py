@@ -41,7 +41,7 @@ def try_out(
     """
     loading = load(engine, path, root=root)
     if not loading.loads:
-        return EngineOutcome(engine, loading.version, loads=loading.loads, message=loading.message)
+        return EngineOutcome(engine, loading.version, loads=loading.loads, message=loading.message, late=loading.late)
     words = [
         engine,
         *places(path, root),
@@ -53,7 +53,7 @@ def try_out(
     limits = launcher.Limits(seconds=seconds, memory=MEMORY, file_size=FILE_SIZE)
     ended = launcher.run(words, module="articad.simulation.trial", limits=limits)
     if ended.late:
-        return EngineOutcome(engine, loading.version, loads=False, message=f"it did not finish within {seconds:g} s")
+        return EngineOutcome(engine, loading.version, loads=None, late=seconds)
     try:
         return EngineOutcome.from_json(answer_in(ended.out))
     except (ValueError, IndexError, TypeError):

@@ -70,7 +70,7 @@ class EngineOutcome:
     Attributes:
         engine: "mujoco" or "pybullet".
         version: Its version.
-        loads: Whether it loaded the model; None if it is not installed.
+        loads: Whether it loaded the model; None if it is not installed or did not finish.
         message: Its own message, if it did not.
         speed_at_rest: Largest speed at the end of holding [rad/s or m/s].
         moved_at_rest: Largest displacement of a held joint [rad or m].
@@ -84,6 +84,7 @@ class EngineOutcome:
         open_loops: Closed loops, or equality constraints, that the file or the engine leaves out.
         passed_over: Joints that were not driven, because the loop that leads them is open.
         unread: Links whose inertia the engine did not read from the file, so that nothing was tried.
+        late: Time after which it was stopped [s], so that nothing is known.
     """
 
     engine: str
@@ -102,6 +103,7 @@ class EngineOutcome:
     open_loops: int = 0
     passed_over: tuple[str, ...] = ()
     unread: tuple[str, ...] = ()
+    late: float | None = None
 
     @property
     def judged(self) -> list[JointReach]:
@@ -164,6 +166,16 @@ class SimulationVerdict:
 
 def _findings(outcome: EngineOutcome) -> Iterator[Finding]:
     name = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}.get(outcome.engine, outcome.engine)
+    if outcome.late is not None:
+        yield Finding(
+            code="W_SIM_NOT_TRIED",
+            where=outcome.engine,
+            message=f"{name} did not finish within {outcome.late:g} s and was stopped, so it says nothing about the model.",
+            hint="Run `articad sim` on the file with more `--seconds`, or while the machine does less.",
+            value=outcome.late,
+            unit="s",
+        )
+        return
     if outcome.loads is None:
         return
     if not outcome.loads:

@@ -14,6 +14,8 @@ from articad.export.urdf import write_urdf
 from articad.runs.record import record_objections, run_report
 from articad.runs.run import Run
 from articad.simulation.standing import stands
+from articad.simulation.trial import try_out
+from articad.simulation.verdict import SimulationVerdict
 from tests.assemblies import four_bar
 from tests.test_commands import write_chest
 
@@ -44,6 +46,33 @@ def test_a_loop_that_is_open_at_rest_and_a_file_that_does_not_load_are_errors(tm
 
     path.write_bytes(b"<mujoco><worldbody><body><joint/></body></worldbody></mujoco>")
     assert stands(assembly, path).codes == ("E_SIM_LOAD",)
+
+
+def test_what_does_not_finish_in_time_is_not_tried_which_is_told_and_no_error(tmp_path: Path) -> None:
+    assembly = four_bar()
+    bundle = write_mjcf(assembly)
+    bundle.write(tmp_path)
+
+    (finding,) = findings = stands(assembly, tmp_path / bundle.main, seconds=0.3)
+
+    assert finding.code == "W_SIM_NOT_TRIED"
+    assert "0.3 s" in finding.message
+    assert findings.ok
+    late = try_out("mujoco", tmp_path / bundle.main, seconds=0.3)
+    assert late.loads is None
+    assert not SimulationVerdict("", (late,)).ok  # nothing was tried
+
+
+def test_a_build_that_could_not_be_tried_is_ok_and_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.simulation.standing.try_out", lambda *words, **options: try_out(*words, **options | {"seconds": 0.3}))
+    out = tmp_path / "out"
+    assert cli.main(["build", str(write_chest(tmp_path / "chest")), "--out", str(out), "--no-pictures", "-q"]) == 0
+
+    report = json.loads((out / "export/mjcf/losses.json").read_text())
+    assert "W_SIM_NOT_TRIED" in {finding["code"] for finding in report["findings"]}
+    assert report["ok"]
+    assert run_report(Run.view(out))["ok"]
+    assert any("not tried in MuJoCo" in str(event.get("message")) for event in Run.view(out).events())
 
 
 def test_every_build_asks_and_an_objection_makes_the_run_not_ok(tmp_path: Path) -> None:
