@@ -53,18 +53,18 @@ def test_what_does_not_finish_in_time_is_not_tried_which_is_told_and_no_error(tm
     bundle = write_mjcf(assembly)
     bundle.write(tmp_path)
 
-    (finding,) = findings = stands(assembly, tmp_path / bundle.main, seconds=0.3)
+    (finding,) = findings = stands(assembly, tmp_path / bundle.main, seconds=0.02)
 
     assert finding.code == "W_SIM_NOT_TRIED"
-    assert "0.3 s" in finding.message
+    assert "0.02 s" in finding.message
     assert findings.ok
-    late = try_out("mujoco", tmp_path / bundle.main, seconds=0.3)
+    late = try_out("mujoco", tmp_path / bundle.main, seconds=0.02)
     assert late.loads is None
     assert not SimulationVerdict("", (late,)).ok  # nothing was tried
 
 
 def test_a_build_that_could_not_be_tried_is_ok_and_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("articad.simulation.standing.try_out", lambda *words, **options: try_out(*words, **options | {"seconds": 0.3}))
+    monkeypatch.setattr("articad.simulation.standing.try_out", lambda *words, **options: try_out(*words, **options | {"seconds": 0.02}))
     out = tmp_path / "out"
     assert cli.main(["build", str(write_chest(tmp_path / "chest")), "--out", str(out), "--no-pictures", "-q"]) == 0
 
