@@ -28,7 +28,7 @@ BLOCK = '<body name="block" pos="0.1 {y} 0.5"><geom type="box" size="0.02 0.006 
 HARD = 'solref="0.0002 0.1"'
 LEVER = 0.06  # m: the ball of a post is on this circle
 CODES = {"E_SIM_LOAD", "E_SIM_EXPLODES", "E_SIM_UNSETTLED", "E_SIM_RANGE", "E_SIM_RESIDUAL", "E_SIM_ENERGY"}
-CODES |= {"I_SIM_LOOPS_OPEN", "I_SIM_UNREAD"}
+CODES |= {"I_SIM_LOOPS_OPEN", "I_SIM_UNREAD", "W_SIM_NOT_TRIED"}
 
 
 def model(folder: Path, step: str = 'timestep="0.002"', **fields: str) -> Path:
@@ -73,6 +73,13 @@ def test_a_model_that_does_not_load_loads_when_the_cause_that_the_audit_names_is
     assert "'arm'" in named
     weighed = '<inertial pos="0 0 0" mass="0.1" diaginertia="1e-4 1e-4 1e-4"/>'
     assert_heals(finding, before, tried(model(tmp_path, arm=weighed)))
+
+
+def test_what_had_too_little_time_is_tried_with_more(tmp_path: Path) -> None:
+    path = model(tmp_path)
+    before = simulate_file(path, engines=("mujoco",), seconds=0.02).findings
+    finding, _ = hinted(before, "W_SIM_NOT_TRIED", "with more `--seconds`")
+    assert_heals(finding, before, simulate_file(path, engines=("mujoco",)).findings)
 
 
 @pytest.mark.parametrize(("code", "solref"), [("E_SIM_EXPLODES", HARD), ("E_SIM_UNSETTLED", "")])
