@@ -16,7 +16,7 @@ from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.plan.fields import NAME_RULE, PlanObject, is_name
 from articad.plan.joint_forms import JOINT_TYPES, JointForm
-from articad.plan.short import expanded
+from articad.plan.short import expanded, is_short, joints_with_a_place
 from articad.texts import escaped
 
 F = TypeVar("F", bound=PlanObject)
@@ -110,15 +110,47 @@ def from_json(form: type[F], document: Any) -> F:
     """
     if not isinstance(document, Mapping):
         raise _refused([_finding("E_SCHEMA", "plan", f"A plan is an object {{…}}, not {_shown(document)}.", "Give one JSON object.")])
+    places = joints_with_a_place(document)
+    short = is_short(document)
     document = expanded(document)
     try:
         return form.model_validate(document)
     except ValidationError as error:
         details = error.errors(include_url=False)
     found = [_translated(form, document, detail) for detail in details[:MOST_FINDINGS]]
-    if (more := len(details) - len(found)) > 0:
+    found = _with_places(found, document, places) if short else found
+    if (more := len(details) - MOST_FINDINGS) > 0:
         found.append(_finding("E_SCHEMA", "plan", f"There are {more} more errors, which are not listed.", "Correct the listed ones first."))
     raise _refused(found) from None
+
+
+def _with_places(found: list[Finding], document: Any, places: Sequence[str]) -> list[Finding]:
+    """Report each "at" of the short form that is no place once, instead of the ends of its joint, which lack their connectors for it.
+
+    Args:
+        found: Findings about the expanded document.
+        document: The expanded document.
+        places: Joints that have a place.
+    """
+    joints = document.get("joints")
+    lost = (
+        {str(joint.get("name")): joint["at"] for joint in joints if isinstance(joint, Mapping) and "at" in joint}
+        if isinstance(joints, list)
+        else {}
+    )
+    about = {f"joints.{name}.{key}" for name in lost for key in ("at", "parent", "child")}
+    named = f", or the name of a joint that is there: {', '.join(places)}" if places else ""
+    hint = f"Give a point [x, y, z], or [o, z] or [o, z, x], in the assembly's frame{named}."
+    told = [
+        _finding(
+            "E_SCHEMA",
+            f"joints.{name}.at",
+            f"{_shown(at)} is no place: a plan has no shapes that could name one.",
+            hint + did_you_mean(str(at), places),
+        )
+        for name, at in lost.items()
+    ]
+    return [one for one in found if one.code != "E_SCHEMA" or one.where not in about] + told
 
 
 def _unique_keys(pairs: list[tuple[str, Any]], repeated: dict[str, None]) -> dict[str, Any]:

@@ -69,6 +69,12 @@ def expanded(document: Any) -> Any:
     return plan
 
 
+def joints_with_a_place(document: Any) -> list[str]:
+    """Return the names of the joints of a document in the short form that state a place, at which other joints may stand."""
+    joints = _objects(_listed(document.get("joints"), _whole)) if is_short(document) else []
+    return [str(joint.get("name")) for joint in joints if _frame(joint.get("at")) is not None]
+
+
 def _listed(entries: Any, form: Callable[[str, Any], Any]) -> Any:
     """Return the list that an object by name stands for."""
     return [form(name, value) for name, value in entries.items()] if isinstance(entries, dict) else entries

@@ -193,6 +193,23 @@ def test_a_joint_may_stand_where_another_joint_is() -> None:
     assert knob.T_rest.apply([knob.connectors["grip"].frame.translation])[0] == pytest.approx((-2, 0, 10))
 
 
+@pytest.mark.parametrize("at", ["top face of post", "axis of bore 1", "post.top", "swnig", 7])
+def test_an_at_that_is_no_place_is_one_finding_that_names_what_is(at: Any) -> None:
+    """A plan has no shapes before its scripts run, so a face has no place in it; the axis of a bore is that of the joint which it makes."""
+    plan = copy.deepcopy(GATE)
+    plan["parts"]["knob"] = {"material": "oak", "dimensions": "size = 9", "rest_pose": {"at": [0, 0, 20]}}
+    plan["joints"]["grip"] = {"type": "fixed", "parent": "leaf", "child": "knob", "at": at}
+    with pytest.raises(PlanError) as refused:
+        AssemblyPlan.from_json(plan)
+    (finding,) = refused.value.findings
+    assert (finding.code, finding.where) == ("E_SCHEMA", "joints.grip.at")
+    assert "Give a point [x, y, z]" in finding.hint
+    assert "the name of a joint that is there: swing" in finding.hint
+    assert ("Did you mean 'swing'?" in finding.hint) == (at == "swnig")
+    plan["joints"]["grip"]["at"] = "swing"
+    assert check_plan(AssemblyPlan.from_json(plan)).of("E_SCHEMA") == ()
+
+
 @pytest.mark.parametrize("copied", ["parent", "child", "child of its own name"])
 def test_a_derived_joint_of_a_part_that_is_no_copy_gets_the_image_of_the_place_and_of_the_features(copied: str) -> None:
     """A gate whose mirror image has a post or a leaf of its own; a mirrored joint turns the other way."""
