@@ -6,13 +6,17 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import pytest
 
 from articad.connectors import SE3
+from articad.errors import KinematicsError
+from articad.findings import Findings
 from articad.kinematics import Mechanism
-from tests.kinematics.linkages import at, four_bar, from_rest, impossible, joint, misaligned
+from articad.kinematics.configuration import Configuration
+from tests.kinematics.linkages import at, four_bar, from_rest, impossible, joint, misaligned, parallelogram, scissor
 from tests.kinematics.test_inexact import reframed, with_digits
 from tests.kinematics.test_mobility import parallel_rods, slack_bars
 from tests.obedience import assert_heals
@@ -119,3 +123,76 @@ def test_a_linkage_made_as_the_hint_says_has_the_finding_no_more(case: Case) -> 
 def test_no_two_findings_of_a_linkage_whose_axes_are_parallel_contradict_each_other() -> None:
     """Bars in line are rigid because of a length, so no hint asks for axes that are parallel already."""
     assert not [finding for finding in slack_bars(0.0).findings() if "hinge axes parallel" in finding.hint]
+
+
+# ---------------------------------------------------------------------- questions that a caller asks
+
+QUESTIONS = {"E_SINGULAR", "E_REACH_BARRED", "E_NO_PATH"}
+
+
+def said(ask: Callable[[], object]) -> Findings:
+    try:
+        answer = ask()
+    except KinematicsError as error:
+        return error.findings
+    return Findings(getattr(answer, "findings", ()))
+
+
+def test_limits_that_keep_away_from_a_singular_configuration_are_reached() -> None:
+    before = scissor(2).feasible_range("lift").findings
+    finding = before.of("E_SINGULAR")[0]
+    match = re.search(r"Set its limits to \[([\d.e-]+), ([\d.e-]+)\] deg", finding.hint)
+    assert match
+    low, high = (math.radians(float(bound)) for bound in match.groups())
+    (lift,) = [one for one in scissor(2).joints if one.name == "lift"]
+    limits = replace(lift.limits, lower=(low,), upper=(high,))
+    assert_heals(finding, before, rejoined(scissor(2), "lift", limits=limits).feasible_range("lift").findings)
+
+
+def test_a_driver_that_keeps_away_from_a_singular_value_is_followed() -> None:
+    before = said(lambda: parallelogram(1.0).poses([[-0.5]]))
+    finding = before.of("E_SINGULAR")[0]
+    assert "Keep the driver away from there" in finding.hint
+    assert_heals(finding, before, said(lambda: parallelogram(1.0).poses([[0.3]])))
+
+
+def gantry() -> Mechanism:
+    """Two slides at right angles: the drivers are the place of the last part."""
+    across = SE3.from_axes((0, 0, 0), (1, 0, 0)), SE3.from_axes((0, 0, 0), (0, 1, 0))
+    span = [(0.0, 100.0)]
+    joints = [
+        joint("x", "slider", ("frame", across[0]), ("bridge", across[0]), limits=span),
+        joint("y", "slider", ("bridge", across[1]), ("tool", across[1]), limits=span),
+    ]
+    return Mechanism(("frame", "bridge", "tool"), "frame", joints)
+
+
+def through_a_slit(configuration: Configuration) -> bool:
+    """A wall from x = 20 to 80 with a slit of 0.02 mm at y = 50."""
+    x, y = configuration["x"].item(), configuration["y"].item()
+    return bool(abs(x - 50.0) > 30.0 or abs(y - 50.0) < 0.01)
+
+
+def test_a_path_with_waypoints_is_found_through_a_slit() -> None:
+    def path(*waypoints: tuple[float, float]) -> Findings:
+        return said(lambda: [gantry().path(a, b, accept=through_a_slit) for a, b in pairwise(waypoints)])
+
+    start, goal = (10.0, 10.0), (90.0, 10.0)
+    before = path(start, goal)
+    finding = before.of("E_NO_PATH")[0]
+    assert "Provide waypoints" in finding.hint
+    assert_heals(finding, before, path(start, (10.0, 50.0), (90.0, 50.0), goal))
+
+
+@pytest.mark.parametrize("way", ["Move the target", "or the obstacle"])
+def test_a_target_or_an_obstacle_that_is_moved_is_out_of_each_others_way(way: str) -> None:
+    """A wall between x = 40 and 60: the target is behind it, or it is taken away."""
+
+    def reach(x: float, *, wall: bool = True) -> Findings:
+        free = (lambda q: not 40.0 < q[0] < 60.0) if wall else None
+        return said(lambda: gantry().reach("tool", (x, 30.0, 0.0), starts=4, accept=free))
+
+    before = reach(50.0)
+    (finding,) = before.of("E_REACH_BARRED")
+    assert way in finding.hint
+    assert_heals(finding, before, reach(30.0) if way == "Move the target" else reach(50.0, wall=False))
