@@ -206,7 +206,7 @@ def test_a_certificate_is_verified_and_a_forged_one_refuted(chest: Path, tmp_pat
     code, verified = report("verify-certificate", out / "certificate.json")
     assert (code, verified["stated"]) == (0, ["Proven while all of these joints move at once, each over its whole range: hinge."])
     assert report("verify-certificate", out) == (code, verified)
-    code, loose = report("certify", out, "--budget", "60", "--within-tolerance", "--tolerance-class", "f")
+    code, loose = report("certify", out, "--budget", "60", "--tolerance-class", "f")
     assert loose["tolerance"]["class"] == "f"
     assert code == (0 if loose["ok"] else 1)
     assert loose["ok"] or {finding["code"] for finding in loose["findings"]} == {"E_TOLERANCE"}

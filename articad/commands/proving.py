@@ -13,6 +13,7 @@ from articad.files import RECORD_BYTES, is_file, read_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
+    from articad.plan.iso2768 import ToleranceClass
 
 CERTIFICATE = "certificate.json"
 
@@ -36,7 +37,12 @@ CERTIFICATE = "certificate.json"
         action="store_true",
         help="prove it for all parts whose surfaces lie anywhere within their general tolerance and declared fits",
     ),
-    argument("--tolerance-class", choices=("f", "m", "c", "v"), default="m", help="general tolerance of ISO 2768-1 (m)"),
+    argument(
+        "--tolerance-class",
+        choices=("f", "m", "c", "v"),
+        default=None,
+        help="class of the general tolerance of ISO 2768-1, and the same as --within-tolerance (m)",
+    ),
 )
 def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
@@ -47,7 +53,7 @@ def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
         with terminal.progress("Reading") as tell:
             assembly = assembly_of(run, progress=tell)
         with terminal.progress("Proving"):
-            tolerance = options.tolerance_class if options.within_tolerance else None
+            tolerance: ToleranceClass | None = options.tolerance_class or ("m" if options.within_tolerance else None)
             certificate = assembly.certify(
                 options.joints, pairs=options.pairs, budget=options.budget, epsilon=options.epsilon, tolerance=tolerance
             )
