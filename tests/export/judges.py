@@ -173,14 +173,17 @@ def newton(assembly: Assembly, path: Path) -> EngineOutcome:
     if path.suffix == ".usda":  # NewtonMimicAPI couples joints of one kind only, which the export states as a loss
         ties = [tie for tie in ties if kinds[tie[0]] == kinds[tie[1]]]
     coupled = {name for name, _, _ in ties} | {leader for _, leader, looped in ties if looped}
-    drivers = driving(assembly)
     opened: set[str] = set()
     if path.suffix == ".urdf" and loops:  # a URDF leaves loops open, and what is coupled with their joints
         opened = following | coupled
     told = {
         "rest": {freedom.name: freedom.rest for freedom in freedoms},
-        "drivers": None if opened else drivers,
-        "following": sorted((following | coupled) - set(drivers) - opened),
+        "drivers": None if opened else driving(assembly),
+        "freedoms": {
+            joint.joint.name: [freedom.name for freedom in sorted(joint.freedoms, key=lambda freedom: freedom.kind != "slide")]
+            for joint in joints
+            if len(joint.freedoms) > 1
+        },
         "opened": sorted(opened),
     }
     outcome = _newton_trials().ask(path, told)
@@ -357,18 +360,19 @@ the one that kinematics computes for it. `articad sim` requires 99 %.
 
 - *loops open*: URDF has no closed loops, and PyBullet leaves out those of MJCF. "3 of open loops not driven" counts the joints whose motion
   such a loop would determine.
-- Newton runs its MuJoCo solver on the processor. Its readers, mimics, loops and contacts are its own. Newton 1.8 closes a loop correctly
+- Newton runs its MuJoCo solver on the processor. Its readers, mimics, loops and collision pairs are its own. The model first stands in steps of that solver,
+  held by springs. Then the model that the solver compiled is held, driven and let go as an MJCF is in MuJoCo: with gravity, by the forces that joints need
+  for the inertia that they feel through loops and couplings, at a pace that followers can keep; and its energy may not grow. Newton 1.8 closes a loop correctly
   only if it is closed where all joints are zero. From USD it reads both frames of a loop joint, but its solver computes the anchor on the
   child from the poses at zero (newton-physics/newton, issue 2293 and pull request 4248). *Anchors of loops corrected* means: the judge
   restored the anchors that Newton had read; otherwise, the loop is a different mechanism. From MJCF, Newton's reader drops the position of
   the second site of a `connect`, so that file is not judged.
 - steering_rack in Newton from USD: NewtonMimicAPI couples joints of one kind only, so the wheel does not drive the rack there, and nothing else moves the
   linkage. The export states this loss.
-- Causes of Newton's other objections. clock_tower: the judge drives the minute hand at a mean of 3 rad/s, and the second hand turns 60 times as fast, which is beyond
-  the 100 rad/s at which the judge stops. jack_scissor: the USD file stated no travel for its screw; Newton locks such degrees, and the judge starts that screw at 0
-  instead of at rest. The export states the travel now; the answer shown is about the earlier file. NewtonMimicAPI cannot couple a screw's turn and travel. landing_gear_side:
-  the judge's spring suits the jack's own 0.0102 kg, but the jack feels 7.86 kg through the linkage, and Newton closes loops softly. Driven by computed torque for
-  that mass, the jack comes to 57.5 % with Newton's loops, and to 100 % with loops as stiff as those of the MJCF (`solref` 0.004 s). The USD export states no stiffness of loops.
+- landing_gear_side in Newton from USD: Newton's solver closes loops softly, with a time constant of 0.02 s where the MJCF states 0.004 s. Its jack of 0.0102 kg feels
+  7.86 kg through the linkage and comes to 57.5 % of its range. From joints of UsdPhysics, Newton reads no stiffness. It reads `mjc:solref` from joints with
+  MjcEqualityConnectAPI, which makes a point of a hinge. With that, the jack covers its range, but the model, whose USD states no damping, gains 61 % of its largest
+  kinetic energy after release (16 % at a quarter of the time step). So the USD export states no stiffness of loops.
 - An empty cell, or a model that is not listed, was not judged. *(earlier)*: by an earlier version of the judge's program, or on an earlier export.
 - Drake and SAPIEN are not in the table: `pytest -m engines_all tests/export/test_elsewhere.py` loads URDFs of all kinds of joints in both, and MJCF and SDF in
   Drake, in an environment of their own, and compares the poses of all links.

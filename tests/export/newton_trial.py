@@ -1,8 +1,10 @@
-"""A model in Newton: loaded by its own readers, then held and driven joint by joint over its ranges.
+"""A model in Newton: loaded by its own readers and stood by its own solver, then driven joint by joint over its ranges.
 
-Springs hold and drive the joints, as stiff as their inertia allows, without gravity: what stops a joint is a contact, a limit or a loop.
-Newton's solver is that of MuJoCo on the processor; bodies, joints, mimics, loops and collision pairs are what Newton's readers make of the
-file. Newton pins MuJoCo, so it lives in an environment of its own: `judges.py` runs this file there.
+Newton's solver on the processor is MuJoCo's. Bodies, joints, mimics, loops and collision pairs are what Newton's readers make of the file, in the model
+that its solver compiles. That model first stands in steps of Newton's solver, held by springs, without gravity. Then `articad.simulation.mujoco_trial`
+asks of it what it asks of an MJCF in MuJoCo: joints are held and driven by computed torque for the inertia that they feel through loops and couplings,
+at a pace that followers can keep, with gravity, and the energy after release may not grow. Newton pins MuJoCo, so it lives in an environment of its own:
+`judges.py` runs this file there.
 
 Newton 1.8 has a known defect in closed loops: its solver computes a loop joint's anchor on the child from the poses at zero coordinates and
 ignores the joint's frame on the child, although its readers have read it (newton-physics/newton, issue 2293 and pull request 4248). A loop
@@ -12,38 +14,48 @@ that is open at zero becomes another mechanism. The trial puts the joint's own a
 from __future__ import annotations
 
 import json
-import math
 import sys
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
-from articad.simulation.verdict import EngineOutcome, JointReach, Role, covered
+from articad.simulation import mujoco_trial
+from articad.simulation.verdict import EngineOutcome
 
 FloatArray = NDArray[np.float64]
 
 TIMESTEP_S: Final = 0.002
 STIFFNESS: Final = 60.0  # ω of the springs [1/s]
-HOLD_S: Final = 0.5
-ENDLESS: Final = 1e9  # Newton's limits of joints without limits are beyond
+STAND_S: Final = 0.2
 ANCHORED: Final = "anchors of loops corrected"
 LEAST_ANCHOR_M: Final = 1e-6
 
 
-class Trial:
-    """One model under test.
+@dataclass
+class Trial(mujoco_trial.Trial):
+    """The model that Newton's solver compiled; joints have the names of the file."""
+
+    names: Mapping[int, str] = field(default_factory=dict)
+
+    def _name(self, joint: int) -> str:
+        return self.names[joint]
+
+
+class Standing:
+    """A model in Newton.
 
     Args:
         path: A URDF, MJCF or USD file.
         rest: Where hinges and slides start by name [rad or m].
+        freedoms: Names of the freedoms of joints that have several, slides before turns.
     """
 
-    def __init__(self, path: Path, rest: Mapping[str, float]) -> None:
+    def __init__(self, path: Path, rest: Mapping[str, float], freedoms: Mapping[str, list[str]]) -> None:
         import newton
         import warp
         from newton.solvers import SolverMuJoCo
@@ -58,114 +70,73 @@ class Trial:
             builder.add_usd(str(path))
         else:
             builder.add_mjcf(str(path))
-        self.solver_class, self.newton = SolverMuJoCo, newton
-        self.model = builder.finalize(device="cpu")
-        self.model.set_gravity((0.0, 0.0, 0.0))
+        self.newton, self.rest, self.freedoms = newton, rest, freedoms
+        self.model = model = builder.finalize(device="cpu")
         self.outcome = EngineOutcome("newton", str(newton.__version__))
+        self.solver = SolverMuJoCo(model, use_mujoco_cpu=True)
         self.names = self._names()
-        q = self.model.joint_q.numpy().astype(float)
-        for dof, name in self.names.items():
-            q[self.coordinates[dof]] = rest.get(name, q[self.coordinates[dof]])
-        self.start = q
+        self._anchor_loops()
 
     def _names(self) -> dict[int, str]:
-        """Return the names of hinges and slides of the tree by degree of freedom; a body's joints have their names in one label.
-
-        Newton does not update the coordinates of joints that close loops.
-        """
-        model = self.model
-        labels, kinds = list(model.joint_label), model.joint_type.numpy()
-        starts, places = model.joint_qd_start.numpy(), model.joint_q_start.numpy()
-        dims, articulations = model.joint_dof_dim.numpy(), model.joint_articulation.numpy()
-        single = {int(self.newton.JointType.REVOLUTE), int(self.newton.JointType.PRISMATIC), int(self.newton.JointType.D6)}
-        found: dict[int, str] = {}
-        self.coordinates: dict[int, int] = {}
-        self.slides: set[int] = set()
-        for joint, label in enumerate(labels):
-            if int(kinds[joint]) not in single or articulations[joint] < 0:
-                continue
-            linear, angular = (int(n) for n in dims[joint])
-            words = _split(label.rpartition("/")[2], linear + angular)
-            for index in range(linear + angular):
-                dof = int(starts[joint]) + index
-                found[dof] = words[index]
-                self.coordinates[dof] = int(places[joint]) + index
-                if index < linear:
-                    self.slides.add(dof)
+        """Return the names of the compiled joints in the file; those of one body have their names in one label."""
+        labels, owners = list(self.model.joint_label), _flat(self.solver.mjc_jnt_to_newton_jnt).tolist()
+        found = {}
+        for joint, owner in enumerate(owners):
+            own = [one for one, other in enumerate(owners) if other == owner]
+            label = labels[owner].rpartition("/")[2]
+            words = self.freedoms.get(label, [])
+            found[joint] = (words if len(words) == len(own) else _split(label, len(own)))[own.index(joint)]
         return found
 
-    def run(self, drivers: tuple[str, ...] | None, following: frozenset[str], opened: frozenset[str]) -> EngineOutcome:
-        """Hold, then drive; return what was measured.
+    def trial(self) -> Trial:
+        """Return the trial of the compiled model."""
+        mj = self.solver.mj_model
+        mj.opt.timestep = TIMESTEP_S
+        mj.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
+        mj.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+        trial = Trial(mj, mujoco.MjData(mj), self.outcome, rest=self.rest, names=self.names)
+        trial.reset()
+        trial.start = np.array(trial.data.qpos)
+        return trial
 
-        Args:
-            drivers: Joints that drive; None for all.
-            following: Joints that follow drivers, by loops or couplings.
-            opened: Joints that are not driven, because their loop is open; "*" for all.
-        """
-        self._prepare()
-        mimics = {self.names[dof] for dof in self.names if self._follows(dof)}
-        self.outcome.passed_over = tuple(name for name in self.names.values() if "*" in opened or name in opened)
-        free = (following | mimics) - set(drivers or ())
-        driven = [dof for dof, name in self.names.items() if name not in free and name not in self.outcome.passed_over]
-        self._hold([dof for dof, name in self.names.items() if name not in free])
-        self.outcome.untried = max(0, len(driven) - MOST_JOINTS)
-        low, high = np.array(self.start), np.array(self.start)
-        tied = bool(free)
-        for dof in driven[:MOST_JOINTS]:
-            if self.outcome.exploded:
-                return self.outcome
-            ends = self._stroke(dof, {one for one, name in self.names.items() if name in free})
-            at = self.coordinates[dof]
-            lower, upper = self._range(dof)
-            name, unit = self.names[dof], "m" if dof in self.slides else "rad"
-            role: Role = "driver" if tied and drivers is not None and name in drivers else "free"
-            share = covered(ends[0][at], ends[1][at], lower, upper)
-            loop = 0 if role == "driver" else None
-            self.outcome.reaches.append(JointReach(name, lower, upper, float(ends[0][at]), float(ends[1][at]), share, unit, "", role, loop))
-            np.minimum(low, ends[0], out=low)
-            np.maximum(high, ends[1], out=high)
-        for dof, name in self.names.items():
-            if name in following and name in free:
-                at, unit = self.coordinates[dof], "m" if dof in self.slides else "rad"
-                ends_ = float(low[at]), float(high[at])
-                self.outcome.reaches.append(JointReach(name, *ends_, *ends_, 1.0, unit, "", "follower", 0))
-        return self.outcome
-
-    def _prepare(self) -> None:
-        """Turn the joints into springs that are as stiff as their inertia at rest allows."""
-        import mujoco
-
-        model = self.model
-        model.joint_q.assign(self.start.astype(np.float32))
-        dofs = model.joint_dof_count
-        model.joint_target_ke.assign(np.zeros(dofs, dtype=np.float32))
-        model.joint_target_kd.assign(np.zeros(dofs, dtype=np.float32))
-        mode = np.full(dofs, int(self.newton.JointTargetMode.POSITION), dtype=np.int32)
-        model.joint_target_mode.assign(mode)
-        model.joint_effort_limit.assign(np.full(dofs, 1e6, dtype=np.float32))
-        self.solver = self.solver_class(model, use_mujoco_cpu=True)
-        mj, data = self.solver.mj_model, self.solver.mj_data
-        mujoco.mj_forward(mj, data)
+    def stand(self, start: Trial) -> None:
+        """Hold every hinge and slide at rest by springs in Newton's own solver, without gravity, and measure."""
+        model, mj, count = self.model, self.solver.mj_model, self.model.joint_dof_count
+        dofs = _flat(self.solver.mjc_dof_to_newton_dof)
+        held = [int(mj.jnt_dofadr[joint]) for joint in start._single_joints()]
         whole = np.zeros((mj.nv, mj.nv))
-        mujoco.mj_fullM(mj, data, whole)
-        inertia = np.diag(whole)
+        mujoco.mj_fullM(mj, start.data, whole)
+        inertia = np.diag(whole)[held]
+        places = model.joint_q_start.numpy(), model.joint_qd_start.numpy()
+        q = model.joint_q.numpy().astype(float)
+        for dof in held:
+            owner = int(np.searchsorted(places[1], dofs[dof], side="right")) - 1
+            q[places[0][owner] + dofs[dof] - places[1][owner]] = start.start[mj.jnt_qposadr[mj.dof_jntid[dof]]]
+        gains = np.zeros((2, count))
+        gains[:, dofs[held]] = inertia * STIFFNESS**2, 2 * inertia * STIFFNESS
+        model.joint_target_ke.assign(gains[0].astype(np.float32))
+        model.joint_target_kd.assign(gains[1].astype(np.float32))
+        model.joint_target_mode.assign(np.full(count, int(self.newton.JointTargetMode.POSITION), dtype=np.int32))
+        model.joint_effort_limit.assign(np.full(count, 1e6, dtype=np.float32))
+        model.set_gravity((0.0, 0.0, 0.0))
+        self.solver = type(self.solver)(model, use_mujoco_cpu=True)
         self._anchor_loops()
-        self.inertia = np.full(dofs, float(inertia.max(initial=1e-6)))
-        self.inertia[: len(inertia)] = inertia[:dofs]
-        self._held: tuple[int, ...] | None = None
-
-    def _springs(self, held: list[int]) -> None:
-        """Give springs to these degrees of freedom, none to the others."""
-        if self._held == tuple(held):
-            return
-        self._held = tuple(held)
-        ke, kd = np.zeros(len(self.inertia)), np.zeros(len(self.inertia))
-        ke[held] = self.inertia[held] * STIFFNESS**2
-        kd[held] = 2 * self.inertia[held] * STIFFNESS
-        self.model.joint_target_ke.assign(ke.astype(np.float32))
-        self.model.joint_target_kd.assign(kd.astype(np.float32))
-        self.solver.notify_model_changed(self.newton.ModelFlags.JOINT_DOF_PROPERTIES)
-        self._anchor_loops()  # the solver has computed them anew
+        now, after, control = model.state(), model.state(), model.control()
+        now.joint_q.assign(q.astype(np.float32))
+        now.joint_qd.zero_()
+        target = np.array(control.joint_target_q.numpy(), dtype=float)
+        for dof in held:
+            owner = int(np.searchsorted(places[1], dofs[dof], side="right")) - 1
+            at = int(places[0][owner] + dofs[dof] - places[1][owner])
+            target[at if len(target) == len(q) else dofs[dof]] = q[at]
+        control.joint_target_q.assign(target.astype(np.float32))
+        for _ in range(round(STAND_S / TIMESTEP_S)):
+            now.clear_forces()
+            self.solver.step(now, after, control, None, TIMESTEP_S)
+            now, after = after, now
+        speeds = np.abs(now.joint_qd.numpy()[dofs[held]])
+        self.outcome.speed_at_rest = float(speeds.max(initial=0.0))
+        self.outcome.top_speed, self.outcome.exploded = self.outcome.speed_at_rest, not np.isfinite(speeds).all()
 
     def _anchor_loops(self) -> None:
         """Put the child's anchor of each row of a loop joint where the joint's frames say.
@@ -193,86 +164,8 @@ class Trial:
             self.outcome.message = ANCHORED if np.abs(mj.eq_data[row, 3:6] - anchor).max() > LEAST_ANCHOR_M else self.outcome.message
             mj.eq_data[row, 3:6] = anchor
 
-    def _reset(self) -> None:
-        self.now, self.next, self.control = self.model.state(), self.model.state(), self.model.control()
-        self.now.joint_q.assign(self.start.astype(np.float32))
-        self.now.joint_qd.zero_()
-        self.solver.reset(self.now) if hasattr(self.solver, "reset") else None
 
-    def _step(self, target: FloatArray) -> None:
-        self.control.joint_target_q.assign(target.astype(np.float32))
-        self.now.clear_forces()
-        self.solver.step(self.now, self.next, self.control, None, TIMESTEP_S)
-        self.now, self.next = self.next, self.now
-        speed = np.abs(self.now.joint_qd.numpy()[list(self.names)]).max(initial=0.0)
-        self.outcome.top_speed = max(self.outcome.top_speed, float(speed))
-        self.outcome.exploded = not math.isfinite(speed) or bool(speed > MOST_SPEED)
-
-    def _hold(self, held: list[int]) -> None:
-        self._reset()
-        self._springs(held)
-        steps, calm = round(HOLD_S / TIMESTEP_S), 0.0
-        for step in range(steps):
-            self._step(self._target())
-            if self.outcome.exploded:
-                return
-            if step >= 0.9 * steps:
-                calm = max(calm, float(np.abs(self.now.joint_qd.numpy()[list(self.names)]).max(initial=0.0)))
-        self.outcome.speed_at_rest = calm
-        here = self.now.joint_q.numpy()
-        away = (abs(float(here[self.coordinates[dof]] - self.start[self.coordinates[dof]])) for dof in self.names)
-        self.outcome.moved_at_rest = max(away, default=0.0)
-        data, mj = self.solver.mj_data, self.solver.mj_model
-        rows = data.efc_type[: data.nefc] == 0  # equality constraints
-        self.outcome.residual = float(np.abs(data.efc_pos[: data.nefc][rows]).max(initial=0.0)) if mj.neq else 0.0
-
-    def _target(self) -> FloatArray:
-        """Return the rest pose as targets."""
-        target = np.array(self.control.joint_target_q.numpy(), dtype=float)
-        for dof, at in self.coordinates.items():
-            target[at if len(target) == len(self.start) else dof] = self.start[at]
-        return target
-
-    def _stroke(self, dof: int, free: set[int]) -> tuple[FloatArray, FloatArray]:
-        """Drive one degree of freedom over its range; return the least and greatest coordinates of all."""
-        self._reset()
-        self._springs([one for one in self.names if one == dof or one not in free])
-        lower, upper = self._range(dof)
-        at, target = self.coordinates[dof], self._target()
-        place = at if len(target) == len(self.start) else dof
-        low, high = np.array(self.start), np.array(self.start)
-        pace = PACE_M_S if dof in self.slides else PACE_RAD_S
-        steps = round(max(STROKE_S, (upper - lower) / pace) / TIMESTEP_S)
-        for value in strokes(float(self.start[at]), lower, upper, steps):
-            target[place] = value
-            self._step(target)
-            if self.outcome.exploded:
-                break
-            here = self.now.joint_q.numpy().astype(float)
-            np.minimum(low, here, out=low)
-            np.maximum(high, here, out=high)
-        return low, high
-
-    def _range(self, dof: int) -> tuple[float, float]:
-        """Return what a joint is driven over: its limits, else one turn or a little travel."""
-        lower, upper = (float(bounds.numpy()[dof]) for bounds in (self.model.joint_limit_lower, self.model.joint_limit_upper))
-        rest = float(self.start[self.coordinates[dof]])
-        if lower < -ENDLESS or upper > ENDLESS:
-            return (rest - FREE_SLIDE_M, rest + FREE_SLIDE_M) if dof in self.slides else (rest, rest + math.tau)
-        if dof not in self.slides and upper - lower > 2 * math.tau:
-            return max(lower, rest - math.tau), min(upper, rest + math.tau)
-        return lower, upper
-
-    def _follows(self, dof: int) -> bool:
-        """True for a joint that Newton ties to another one."""
-        joints = self.model.joint_qd_start.numpy()
-        joint = int(np.searchsorted(joints, dof, side="right")) - 1
-        named = self.model.joint_mimic_joint
-        rows = getattr(self.model, "constraint_mimic_joint0", None)
-        return (named is not None and int(named.numpy()[joint]) >= 0) or (rows is not None and joint in rows.numpy().tolist())
-
-
-def _flat(array: Any) -> FloatArray:
+def _flat(array: Any) -> NDArray[Any]:
     return np.asarray(array.numpy() if hasattr(array, "numpy") else array).reshape(-1)
 
 
@@ -297,19 +190,26 @@ def _split(label: str, count: int) -> list[str]:
 def tried(path: str, options: dict[str, Any]) -> EngineOutcome:
     """Return what was measured of a file; a failure to load it as a message."""
     drivers = options.get("drivers")
+    told = Path(path), options.get("rest", {}), options.get("freedoms", {})
     try:
-        return Trial(Path(path), options.get("rest", {})).run(
-            None if drivers is None else tuple(drivers), frozenset(options.get("following", ())), frozenset(options.get("opened", ()))
-        )
+        model = Standing(*told)
+        model.stand(model.trial())
+        calm, message = model.outcome.speed_at_rest, model.outcome.message
+        if model.outcome.exploded:
+            return model.outcome
+        outcome = Standing(*told).trial().run(None if drivers is None else tuple(drivers), frozenset(options.get("opened", ())))
     except Exception as error:  # noqa: BLE001 - whatever Newton raises about a file is its answer
         return EngineOutcome("newton", loads=False, message=f"{type(error).__name__}: {error}"[:300])
+    outcome.speed_at_rest, outcome.message = max(outcome.speed_at_rest, calm), message
+    return outcome
 
 
 def main() -> int:
     """Try the models that lines of the input name, `[path, options]`, and print what was measured, a line for each."""
     for line in sys.stdin:
         path, options = json.loads(line)
-        print("\n" + json.dumps(asdict(tried(path, options))), flush=True)  # noqa: T201 - this is the answer
+        row = {key: value for key, value in asdict(tried(path, options)).items() if key != "frames"}
+        print("\n" + json.dumps(row), flush=True)  # noqa: T201 - this is the answer
     return 0
 
 
