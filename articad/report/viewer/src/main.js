@@ -49,9 +49,16 @@ function update() {
   if (quiet) return;
   view?.place(mechanism.poses(Q));
   view?.showOverlaps(isHere);
+  refreshMeasure();
+  if (!playing || performance.now() - refreshed > READ) refreshValues();
+}
+
+const READ = 100; // ms between values while joints play: the page is laid out for each, and nobody reads faster
+let refreshed = 0;
+function refreshValues() {
+  refreshed = performance.now();
   for (const control of controls) control.refresh();
   refreshFollowers();
-  refreshMeasure();
 }
 
 // Whether the model stands in a pose: named coordinates as given, the drivers that are not named at rest.
@@ -153,6 +160,7 @@ function stop() {
   if (playing) {
     pressed(playing, false);
     playing.textContent = playing.id === "play" ? "▶ Play" : "▶";
+    refreshValues();
   }
   playing = null;
 }
