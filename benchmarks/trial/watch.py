@@ -3,8 +3,8 @@
     python benchmarks/trial/watch.py FOLDER [--ends .py,.json,.txt] &
 
 Each half second, every file that was written by hand (its name ends as stated, and it is in no folder that a tool makes) is compared with its
-last version: inserted and replaced characters count, also when they replace what was written before. The sums go to FOLDER/written.json:
-`seconds` since the watch began until the last change, `characters` in all, `final` characters in the last versions.
+last version: inserted and replaced characters count, also when they replace what was written before. A copy of a file that is there already
+counts nothing. The sums go to FOLDER/written.json: `seconds` since the watch began until the last change, `characters` in all, `final` characters in the last versions.
 The watch ends when FOLDER/done is there.
 """
 
@@ -56,9 +56,10 @@ def main() -> None:
                 continue
             text = file.read_text(errors="replace")
             if text != known.get(file):
-                characters += written(known.get(file, ""), text)
+                if text not in known.values():
+                    characters += written(known.get(file, ""), text)
                 known[file], changed = text, time.time()
-        report = {"seconds": round(changed - began, 1), "characters": characters, "final": sum(map(len, known.values()))}
+        report = {"seconds": round(changed - began, 1), "characters": characters, "final": sum(map(len, set(known.values())))}
         if ended:
             report["done_after_s"] = round((folder / "done").stat().st_mtime - began, 1)
         (folder / "written.json").write_text(json.dumps(report) + "\n")
