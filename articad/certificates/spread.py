@@ -3,7 +3,8 @@
 A chain is a product of one-parameter motions. About the centre of a box, a point b·p moves along `u` by at most its speed there times
 the half width of each coordinate, plus half the largest second derivative times the square: for i outside j, ∂²p/∂qᵢ∂qⱼ = ωᵢ × (ωⱼ × (p
 − oⱼ)), whose component along u is at most |u × ωᵢ| times the speed that j gives the point. So faces that slide along each other, and
-shafts that turn in their bores, stay apart in wide boxes: only their normals count.
+shafts that turn in their bores, stay apart in wide boxes: only their normals count. Factors outside i turn its axis: a turn by δ about ωₕ
+moves it by 2 sin(|δ| / 2) |ωₕ × ωᵢ|, so a wheel that turns about the axis of another one does not tilt it.
 """
 
 from __future__ import annotations
@@ -15,8 +16,6 @@ import numpy as np
 
 from articad.arrays import FloatArray, IntArray
 from articad.interference.motion import Chain, Mover
-
-_PARALLEL = 1e-12  # |sine| of axes that are declared parallel, after the arithmetic of a few frames
 
 
 class Factor(NamedTuple):
@@ -52,6 +51,7 @@ class Spread:
         omega: Axes of the factors in the frame of a, 0 for slides, `(m, F, 3)`.
         moment: Their velocities at a's origin, `(m, F, 3)` [mm].
         width: Half width of each factor's coordinate, `(m, F)`.
+        tilt: Largest distance by which the factors outside move the end of each unit axis, `(m, F)`.
         spin: Generators of first order, `(m, G, 3)`: coupled motions form one of them.
         flow: Their velocities at a's origin, `(m, G, 3)` [mm].
     """
@@ -61,6 +61,7 @@ class Spread:
     omega: FloatArray = field(init=False)
     moment: FloatArray = field(init=False)
     width: FloatArray = field(init=False)
+    tilt: FloatArray = field(init=False)
     spin: FloatArray = field(init=False)
     flow: FloatArray = field(init=False)
 
@@ -68,9 +69,9 @@ class Spread:
         self.factors = [(at, factor) for at, mover in enumerate(self.chain.movers) for factor in factors_of(mover)]
         self.turns = np.array([float(any(factor.turn)) for _, factor in self.factors])
         F = len(self.factors)
-        self.omega, self.moment, self.width = np.empty((0, F, 3)), np.empty((0, F, 3)), np.empty((0, F))
+        self.omega, self.moment = np.empty((0, F, 3)), np.empty((0, F, 3))
+        self.width, self.tilt = np.empty((0, F)), np.empty((0, F))
         self.spin, self.flow = np.empty((0, F, 3)), np.empty((0, F, 3))
-        self.is_parallel: bool | None = None
 
     def __len__(self) -> int:
         return len(self.T)
@@ -88,20 +89,12 @@ class Spread:
             spin, flow = omega * width[..., None], moment * width[..., None]
         else:
             spin, flow = generators @ omega, generators @ moment
-        if self.is_parallel is None:
-            self._set_parallel(omega[0])
-        first = len(self.T)
-        if not first:
-            self.T, self.omega, self.moment, self.width, self.spin, self.flow = T, omega, moment, width, spin, flow
-        else:
-            self.T, self.omega = np.concatenate([self.T, T]), np.concatenate([self.omega, omega])
-            self.moment, self.width = np.concatenate([self.moment, moment]), np.concatenate([self.width, width])
-            self.spin, self.flow = np.concatenate([self.spin, spin]), np.concatenate([self.flow, flow])
+        first, tilt = len(self.T), _tilt(omega, width)
+        self.T, self.omega = np.concatenate([self.T, T]), np.concatenate([self.omega, omega])
+        self.moment, self.width = np.concatenate([self.moment, moment]), np.concatenate([self.width, width])
+        self.tilt = np.concatenate([self.tilt, tilt])
+        self.spin, self.flow = (np.concatenate([self.spin, spin]), np.concatenate([self.flow, flow])) if first else (spin, flow)
         return np.arange(first, len(self.T))
-
-    def _set_parallel(self, omega: FloatArray) -> None:
-        axes = omega[[f for f in range(len(omega)) if self.turns[f]]]
-        self.is_parallel = bool((np.linalg.norm(np.cross(axes, axes[:1]), axis=1) <= _PARALLEL).all())
 
     def _placed(self, centres: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return `T_a_b`, the factors' axes and moments at values of the coordinates."""
@@ -155,10 +148,7 @@ class Spread:
             reach = np.minimum(reach, sides[..., 0] + sides[..., 1] + sides[..., 2])
         speed = _length(_cross(w, p[:, None]) + v) + reach
         turned = width * self.turns
-        share = _length(_cross(u[:, :, None], w[:, None]))  # (n, D, F)
-        if not self.is_parallel:  # the factors outside turn an axis
-            outside = np.cumsum(turned, axis=1) - turned
-            share = np.minimum(share + outside[:, None], 1.0)
+        share = np.minimum(_length(_cross(u[:, :, None], w[:, None])) + self.tilt[box][:, None], 1.0)  # (n, D, F)
         total = np.zeros(u.shape[:2])
         inside = np.zeros(len(p))  # how far the factors inside move the point
         weighted = share * turned[:, None]
@@ -169,6 +159,13 @@ class Spread:
             total += carried[:, None] * (weighted[..., f] + 2 * before[..., f])
             inside = inside + carried
         return np.asarray(total / 2)
+
+
+def _tilt(omega: FloatArray, width: FloatArray) -> FloatArray:
+    """Bound how far the end of each unit axis `(k, F, 3)` moves while the factors before it turn by at most `width` `(k, F)`; `(k, F)`."""
+    chord = 2 * np.sin(np.minimum(width, np.pi) / 2)
+    sines = _length(_cross(omega[:, :, None], omega[:, None]))  # (k, outer factor, inner factor)
+    return np.asarray(np.einsum("kh,khf->kf", chord, np.triu(sines, k=1)))
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -34,7 +34,6 @@ BYTES = 2**29  # largest size of a file
 PROOF = "_proof"  # no part has this name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
 HALF = 0.5  # largest deviation of entries of a rotation by which a loop may be open: it excludes half a turn, even with 1 rad more
-ALIGNED = 1e-12  # sine of axes that are parallel
 SIDES = np.array(list(itertools.product((0, 1), repeat=3)))
 COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "of_a")  # arrays of every claim
 REST = 1e-6  # rad or mm: largest deviation of a follower at rest
@@ -840,13 +839,14 @@ class Checker:
         parts = [np.stack(np.broadcast_arrays(*column), axis=1) for column in zip(*moved, strict=True)] if moved else nothing
         w, v, along, aside = (np.broadcast_to(part, (len(todo), *part.shape[1:])) for part in parts)
         turned = (np.abs(along).sum(2) + aside) * w.any(2)
-        turning = w[np.arange(len(todo)), w.any(2).argmax(1)]
-        loose = np.abs(cross(w, turning[:, None])).max((1, 2)) > ALIGNED
+        tilted = np.linalg.norm(
+            cross(w[:, :, None], w[:, None]), axis=3
+        )  # a turn by d moves the end of an axis inside by 2 sin(d/2) times this
         off = [
             np.abs((v + cross(w, centre)) @ across).max((1, 2)),
             np.abs(cross(w, axis)).max((1, 2)),
             np.abs(across @ across - across).max(),
         ]
         steady = list(zip(todo, functools.reduce(np.maximum, off) < ROUNDING, strict=True))  # none of them moves about one axis or point
-        outer = loose[:, None] * (np.cumsum(turned, axis=1) - turned)
+        outer = (2 * np.sin(np.minimum(turned, np.pi) / 2)[..., None] * np.triu(tilted, 1)).sum(1)
         return steady, [T[:, :3, :3], T[:, :3, 3], np.cross(w[:, :, None], np.eye(3)), v, along, aside, turned, outer], np.array(halves)

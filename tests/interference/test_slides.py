@@ -184,6 +184,8 @@ def test_no_point_goes_further_than_its_bound(seed: int) -> None:
     columns = [factor.column for _, factor in spread.factors]
     box = spread.add(centre[None], half[columns][None])
     points, u = rng.uniform(-40, 40, size=(20, 3)), rng.normal(size=(20, 6, 3))
+    axes = spread.omega[0][spread.turns > 0]
+    u[:, : min(5, len(axes))] = axes[:5]  # a turn does not move points along its own axis, unless the turns outside tilt it
     u /= np.linalg.norm(u, axis=2, keepdims=True)
     T = chain.matrix(centre)
     here = points @ T[:3, :3].T + T[:3, 3]
@@ -197,6 +199,35 @@ def test_no_point_goes_further_than_its_bound(seed: int) -> None:
         farthest = np.maximum(farthest, np.abs(np.einsum("pdi,pi->pd", u, moved)))
     assert (farthest <= bound + 1e-9).all()
     assert np.median(bound / np.maximum(farthest, 1e-9)) < 100  # it is of some use, too
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_axis_tilts_further_than_its_bound(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    spread = Spread(mixed(rng))
+    columns = [factor.column for _, factor in spread.factors]
+    count = max(columns) + 1
+    centre, half = rng.uniform(-1, 1, size=count), 10.0 ** rng.uniform(-2, 0.7, size=count)
+    at = int(spread.add(centre[None], half[columns][None])[0])
+    others = spread.add(centre + rng.choice([-1.0, 1.0, 0.0, 0.6], size=(400, count)) * half, np.tile(half[columns], (400, 1)))
+    tilted = np.linalg.norm(spread.omega[others] - spread.omega[at], axis=2).max(axis=0)
+    assert (tilted <= spread.tilt[at] + 1e-9).all()
+    turning = np.flatnonzero(spread.turns)
+    if len(turning) > 1 and half[columns[turning[0]]] < np.pi:  # the second axis is turned by the first alone: that bound is reached
+        assert tilted[turning[1]] > 0.99 * spread.tilt[at, turning[1]]
+
+
+def test_a_wheel_that_spins_does_not_tilt_the_axis_of_another_wheel() -> None:
+    # wheel a spins about x, a knuckle turns about z, wheel b spins about x again: b's axis leans as far as the knuckle turns it, at any spin
+    turn_y = SE3.from_matrix(np.array([[0.0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]]))  # z of a connector along x
+    ends = {"spin_a": np.pi, "steer": 0.1, "spin_b": np.pi}
+    joints = [
+        joint(name, "revolute", f"p{at}", f"p{at + 1}", at_parent=frame, at_child=frame, lower=(-ends[name],), upper=(ends[name],))
+        for at, (name, frame) in enumerate(zip(ends, (turn_y, SE3.identity(), turn_y), strict=True))
+    ]
+    spread = Spread(Chain(Route(tuple(f"p{at}" for at in range(4)), tuple(joints)), list(ends), coordinates=PROVEN))
+    spread.add(np.zeros((1, 3)), np.array([list(ends.values())]))
+    np.testing.assert_allclose(spread.tilt, [[0.0, 2 * np.sin(np.pi / 2), 2 * np.sin(0.05)]], atol=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(6))
