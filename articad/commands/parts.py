@@ -35,7 +35,7 @@ def _part(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.assembly import DEFLECTION_MM
     from articad.errors import KernelError
     from articad.kernels.choice import kernel_named
-    from articad.kernels.parts import SCRIPT_SUFFIX, build_source
+    from articad.kernels.parts import build_source, script_file
     from articad.plan.resolve import resolve
     from articad.plan.schema import AssemblyPlan
 
@@ -44,7 +44,7 @@ def _part(options: argparse.Namespace, terminal: Terminal) -> Report:
     names = list(dict.fromkeys(options.names)) or [part.name for part in resolved.parts.values() if part.derivation is None]
     kind = options.kernel or plan.kernel
     folder = Path(options.plan) if Path(options.plan).is_dir() else Path(options.plan).parent
-    scripts = {name: _script(resolved, name, folder / "parts" / f"{name}{SCRIPT_SUFFIX[kind]}") for name in names}
+    scripts = {name: _script(resolved, name, script_file(folder / "parts", name, kind), folder) for name in names}
     kernel, cache = kernel_named(kind, sandbox=sandbox_level(options)), build_cache(options)
 
     with terminal.progress("Building", total=len(names)) as tell, ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
@@ -74,7 +74,7 @@ def _part(options: argparse.Namespace, terminal: Terminal) -> Report:
     }
 
 
-def _script(resolved: ResolvedPlan, name: str, file: Path) -> bytes:
+def _script(resolved: ResolvedPlan, name: str, file: Path, folder: Path) -> bytes:
     """Return the script of a part.
 
     Raises:
@@ -90,7 +90,7 @@ def _script(resolved: ResolvedPlan, name: str, file: Path) -> bytes:
         message = f"{name!r} is derived: it needs no script. Build {target.derivation.source!r}, and it follows."
         raise ReadError(message, path=str(file), where=name)
     try:
-        return read_file(file, SCRIPT_BYTES, root=file.parent.parent)
+        return read_file(file, SCRIPT_BYTES, root=folder)
     except OSError as error:
         raise ReadError.at(file, f"{file} cannot be read: {error.strerror}.", "Write the script there.") from None
 

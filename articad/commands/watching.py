@@ -76,10 +76,12 @@ def _waiting(error: Sequence[str]) -> str:
 
 def lines_of(error: ArticadError, folder: Path) -> tuple[str, ...]:
     """Return what a person needs to mend a failed build: what failed, then file, line, cause and hint of each finding."""
+    from articad.kernels.parts import script_file
+
     lines = []
     for finding in error.findings[:_LINES]:
-        script = folder / "parts" / f"{finding.where.removeprefix('parts.')}.py"
-        where = f"parts/{script.name}" if script.is_file() else f"plan.json, {finding.where}"
+        script = script_file(folder / "parts", finding.where.removeprefix("parts."), "build123d")
+        where = str(script.relative_to(folder)) if script.is_file() else f"plan.json, {finding.where}"
         hint = "" if finding.hint in finding.message else f" {finding.hint}"
         lines.append(f"{where}: {finding.message}{hint}")
     if len(error.findings) > _LINES:
@@ -153,7 +155,7 @@ def watch(
 def fingerprint(folder: Path) -> str:
     """Return a value that changes whenever the plan or a part script does."""
     total = hashlib.sha256()
-    for file in [folder / "plan.json", *sorted((folder / "parts").glob("*.py"))]:
+    for file in [folder / "plan.json", *sorted(folder.glob("parts*.py")), *sorted((folder / "parts").glob("*.py"))]:
         try:
             content = read_file(file, PLAN_BYTES)
         except OSError:  # deleted, or just being replaced: the next check will see

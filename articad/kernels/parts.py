@@ -47,37 +47,52 @@ class RealisedPart:
     findings: Findings
 
 
+def script_file(folder: Path, name: str, kernel: str) -> Path:
+    """Return where the script of a part is: `<name>.py` in a folder, else the one beside the folder that builds all other parts."""
+    own = folder / f"{name}{SCRIPT_SUFFIX[kernel]}"
+    common = folder.parent / f"{folder.name}{SCRIPT_SUFFIX[kernel]}"
+    return common if not _is_there(own) and _is_there(common) else own
+
+
+def _is_there(path: Path) -> bool:
+    return path.is_symlink() or path.exists()
+
+
 def find_scripts(folder: Path, resolved: ResolvedPlan, kernel: str) -> dict[str, bytes]:
     """Read the script of every part that is not derived.
+
+    Args:
+        folder: Holds `<part>.py` for each part; `parts.py` beside a folder `parts` builds all parts that have no script of their own.
+        resolved: The plan with its numbers.
+        kernel: Whose scripts are read.
 
     Raises:
         ContractError: With `E_SCRIPT_MISSING` for each part that has none.
     """
-    suffix = SCRIPT_SUFFIX[kernel]
     scripts: dict[str, bytes] = {}
     missing = []
     present = sorted(path.name for path in folder.glob("*.py")) if folder.is_dir() else []
     for name, part in resolved.parts.items():
         if part.derivation is not None:
             continue
-        path = folder / f"{name}{suffix}"
-        if path.is_symlink() or path.exists():
-            scripts[name] = _script(path)
+        path = script_file(folder, name, kernel)
+        if _is_there(path):
+            scripts[name] = _script(path, folder.parent)
         else:
-            missing.append(_script_missing(name, path.name, present))
+            missing.append(_script_missing(name, path, present))
     if missing:
         raise ContractError("\n".join(map(str, missing)), findings=missing)
     return scripts
 
 
-def _script(path: Path) -> bytes:
+def _script(path: Path, root: Path) -> bytes:
     """Return a part's script.
 
     Raises:
         ReadError: If it is not a file, is too large, or is a link.
     """
     try:
-        return read_file(path, SCRIPT_BYTES, root=path.parent.parent)
+        return read_file(path, SCRIPT_BYTES, root=root)
     except OSError as error:
         raise ReadError.at(path, f"{path} cannot be read: {error.strerror}.", "Write the script there.") from None
 
@@ -108,7 +123,11 @@ def build_parts(
     """
     tell = progress or _silent
     sources = [name for name, part in resolved.parts.items() if part.derivation is None]
-    missing = [_script_missing(name, f"{name}{SCRIPT_SUFFIX[kernel.name]}", sorted(scripts)) for name in sources if name not in scripts]
+    missing = [
+        _script_missing(name, Path("parts", f"{name}{SCRIPT_SUFFIX[kernel.name]}"), sorted(scripts))
+        for name in sources
+        if name not in scripts
+    ]
     if missing:
         raise ContractError("\n".join(map(str, missing)), findings=missing)
 
@@ -210,13 +229,14 @@ def _all_failures(errors: Mapping[str, KernelError], total: int) -> ContractErro
     return ContractError("\n".join(lines), findings=findings, parts=tuple(errors))
 
 
-def _script_missing(name: str, file: str, present: list[str]) -> Finding:
+def _script_missing(name: str, file: Path, present: list[str]) -> Finding:
     return Finding(
         code="E_SCRIPT_MISSING",
         where=f"parts.{name}",
         parts=(name,),
-        message=f"Part {name!r} has no script {file!r}.{did_you_mean(file, present)}",
-        hint=f"Write {file} with a function build(part) that returns (shape, connectors).",
+        message=f"Part {name!r} has no script {file.name!r}.{did_you_mean(file.name, present)}",
+        hint=f"Write {file.name} with a function build(part) that returns (shape, connectors), "
+        f"or one script {file.parent.name}{''.join(file.suffixes)} beside {file.parent.name}/ for all parts that have none.",
     )
 
 
