@@ -13,13 +13,16 @@ from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
+from articad.commands.checked import Check
 from articad.files import PLAN_BYTES, read_file
 
 if TYPE_CHECKING:
+    from articad.assembly import Assembly
     from articad.commands.terminal import Terminal
     from articad.errors import ArticadError
+    from articad.plan.schema import AssemblyPlan
 
 _LOOK_S: Final = 0.3  # between two checks of the files
 _LINES: Final = 8  # findings of a failed build that the page shows
@@ -39,6 +42,7 @@ class PageServer:
         self.version = ""
         self.message = ""
         self.error: tuple[str, ...] = ()
+        self.shown: tuple[Assembly, AssemblyPlan] | None = None
         self._server = ThreadingHTTPServer(("127.0.0.1", port), _handler(self))
         self._server.daemon_threads = True
         self._thread = threading.Thread(target=self._server.serve_forever, daemon=True)
@@ -52,6 +56,15 @@ class PageServer:
     def address(self) -> str:
         """Address of the page."""
         return f"http://127.0.0.1:{self.port}/"
+
+    def show(self, version: str, *, checks: dict[str, Any] | None = None) -> None:
+        """Serve the page of the product that is shown, with its checks if they have ended."""
+        from articad.report import Documents, report_page
+
+        assert self.shown is not None
+        assembly, plan = self.shown
+        self.page = report_page(assembly, Documents(checks=checks, plan=plan.dumps()), watch=version)
+        self.version = version
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -138,18 +151,27 @@ def watch(
     """
     folder = Path(options.plan) if Path(options.plan).is_dir() else Path(options.plan).parent
     before, built = "", 0
+    check: Check | None = None
     try:
         while True:
             now = fingerprint(folder)
             if now != before:
                 before = now
-                _rebuild(folder, options, terminal, server, version=now)
+                if check is not None:
+                    check.stop()
+                check = Check(folder, options) if _rebuild(folder, options, terminal, server, version=now) else None
                 built += 1
                 if built == 1 and opened is not None:
                     opened(server.address)
+            elif check is not None and check.has_ended:
+                _checked(check, terminal, server, version=now)
+                check = None
             wait(_LOOK_S)
     except KeyboardInterrupt:
         return built
+    finally:
+        if check is not None:
+            check.stop()
 
 
 def fingerprint(folder: Path) -> str:
@@ -164,32 +186,43 @@ def fingerprint(folder: Path) -> str:
     return total.hexdigest()[:16]
 
 
-def _rebuild(folder: Path, options: argparse.Namespace, terminal: Terminal, server: PageServer, *, version: str) -> None:
-    """Rebuild what has changed, show it, then check it; errors are printed and shown on the page, which otherwise stays as it was.
+def _rebuild(folder: Path, options: argparse.Namespace, terminal: Terminal, server: PageServer, *, version: str) -> bool:
+    """Rebuild what has changed and show it, under a version of its own: checks take several times as long. Return whether it succeeded.
 
-    Checks take several times as long as the rest: the model is shown before they end, under a version of its own.
+    Errors are printed and shown on the page, which otherwise stays as it was.
     """
     from articad.commands.steps import assembled
     from articad.errors import ArticadError
-    from articad.interference.statements import about_rest
     from articad.plan.schema import AssemblyPlan
-    from articad.report import Documents, report_page
 
     started = time.monotonic()
     server.message = "Building …"
     try:
         plan = AssemblyPlan.load(folder)
-        assembly = assembled(plan, folder / "parts", options, terminal)
-        shown = f"{version} before checks"
-        server.page = report_page(assembly, Documents(plan=plan.dumps()), watch=shown)
-        server.version, server.message, server.error = shown, "Checking …", ()
-        checks = assembly.check()
-        server.page = report_page(assembly, Documents(checks=checks.to_json(), plan=plan.dumps()), watch=version)
+        server.shown = assembled(plan, folder / "parts", options, terminal), plan
+        server.show(f"{version} before checks")
     except ArticadError as error:
         terminal.error(error)
         server.message, server.error = "", lines_of(error, folder)
+        return False
+    server.message, server.error = "Checking …", ()
+    terminal.say(f"{plan.name}: built in {time.monotonic() - started:.1f} s.")
+    terminal.out.flush()
+    return True
+
+
+def _checked(check: Check, terminal: Terminal, server: PageServer, *, version: str) -> None:
+    """Show what a check found, or why it found nothing."""
+    from articad.interference.statements import about_rest
+
+    report = check.report()
+    if report is None:
+        terminal.say(f"Not checked: {check.failure}")
+        server.message, server.error = "", (f"The product was not checked: {check.failure}",)
         return
-    server.version, server.message, server.error = version, "", ()
-    terminal.findings(checks.findings)
-    terminal.say(f"{plan.name}: built in {time.monotonic() - started:.1f} s. {about_rest(checks.to_json()).sentence}")
+    server.show(version, checks=report)
+    server.message = ""
+    for finding in report["findings"]:
+        terminal.finding(finding)
+    terminal.say(about_rest(report).sentence)
     terminal.out.flush()

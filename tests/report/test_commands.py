@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import shutil
+import signal
 import subprocess
+import time
 import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
@@ -17,6 +20,8 @@ from PIL import Image
 
 from articad import cli, examples
 from articad.assembly import Assembly
+from articad.commands import watching
+from articad.commands.checked import Check
 from articad.commands.command import COMMANDS
 from articad.commands.terminal import Terminal
 from articad.commands.watching import PageServer, fingerprint, watch
@@ -166,8 +171,7 @@ def test_a_saved_file_is_built_and_served_and_an_error_keeps_the_old_page(starte
             except StopIteration:
                 raise KeyboardInterrupt from None
 
-        options = argparse.Namespace(plan=str(folder), kernel=None, sandbox=None, jobs=1, force=False, parameters=[])
-        built = watch(options, Terminal(quiet=True), server, wait=wait)
+        built = watch(options_for(folder), Terminal(quiet=True), server, wait=wait)
         with pytest.raises(urllib.error.HTTPError, match="403"):
             ask(server, "", host="elsewhere.example")
 
@@ -183,33 +187,84 @@ def test_a_saved_file_is_built_and_served_and_an_error_keeps_the_old_page(starte
     assert fingerprint(folder) != versions[1]
 
 
-def test_an_edit_is_shown_before_its_checks_have_ended(starter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def options_for(folder: Path) -> argparse.Namespace:
+    return argparse.Namespace(plan=str(folder), kernel=None, sandbox=None, jobs=1, force=False, parameters=[])
+
+
+def test_an_edit_is_shown_before_its_checks_have_ended(starter: Path, tmp_path: Path) -> None:
     folder = tmp_path / "watched"
     shutil.copytree(starter, folder)
-    meanwhile: list[tuple[str, str, str]] = []
-    check = Assembly.check
+    seen: list[tuple[str, str, str]] = []
 
     with PageServer() as server:
 
-        def checked(assembly: Assembly) -> Any:
-            meanwhile.append((server.version, server.page, server.message))
-            return check(assembly)
+        def wait(seconds: float) -> None:
+            seen.append((server.version, server.page, server.message))
+            if server.version == fingerprint(folder):
+                raise KeyboardInterrupt
+            time.sleep(seconds)
 
-        def end(_seconds: float) -> None:
-            raise KeyboardInterrupt
+        watch(options_for(folder), Terminal(quiet=True), server, wait=wait)
 
-        monkeypatch.setattr(Assembly, "check", checked)
-        options = argparse.Namespace(plan=str(folder), kernel=None, sandbox=None, jobs=1, force=False, parameters=[])
-        watch(options, Terminal(quiet=True), server, wait=end)
-
-    [(version, page, message)] = meanwhile
+    version, page, message = seen[0]
     assert message == "Checking …"
     assert f'"watch":"{version}"' in page
     assert "not checked yet" in page
     assert "clear at rest" not in page
-    assert server.version == fingerprint(folder) != version
-    assert "clear at rest" in server.page
+    assert seen[-1][0] != version
+    assert "clear at rest" in seen[-1][1]
     assert (server.message, server.error) == ("", ())
+
+
+def test_an_edit_ends_the_checks_of_the_edit_before(starter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "watched"
+    shutil.copytree(starter, folder)
+    plan = folder / "plan.json"
+    started: list[Check] = []
+
+    class Endless(Check):
+        def __init__(self, folder: Path, options: argparse.Namespace) -> None:
+            super().__init__(folder, options)
+            os.kill(self._child.pid, signal.SIGSTOP)  # a check that takes long
+            started.append(self)
+
+    monkeypatch.setattr(watching, "Check", Endless)
+    with PageServer() as server:
+
+        def wait(_seconds: float) -> None:
+            if len(started) == 2:
+                raise KeyboardInterrupt
+            plan.write_text(plan.read_text() + " ")
+
+        watch(options_for(folder), Terminal(quiet=True), server, wait=wait)
+
+    first, second = started
+    assert first.has_ended
+    assert second.has_ended
+    assert first.report() is None
+    assert server.version == f"{fingerprint(folder)} before checks"
+
+
+def test_a_check_that_fails_is_said_on_the_page(starter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "watched"
+    shutil.copytree(starter, folder)
+
+    class Killed(Check):
+        def __init__(self, folder: Path, options: argparse.Namespace) -> None:
+            super().__init__(folder, options)
+            self.stop()
+
+    monkeypatch.setattr(watching, "Check", Killed)
+    with PageServer() as server:
+
+        def wait(_seconds: float) -> None:
+            if server.error:
+                raise KeyboardInterrupt
+
+        watch(options_for(folder), Terminal(quiet=True), server, wait=wait)
+
+    assert server.error == ("The product was not checked: signal 9",)
+    assert "not checked yet" in server.page
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
