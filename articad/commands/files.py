@@ -38,6 +38,11 @@ if TYPE_CHECKING:
         action="store_true",
         help="for URDF: give every link its part's frame, with an empty link and a fixed joint where a joint's axis misses its origin",
     ),
+    argument(
+        "--flat",
+        action="store_true",
+        help="for STEP: write all parts side by side, without sub-assemblies of parts that are fixed together",
+    ),
     argument("--ros", metavar="PACKAGE", default=None, help="write URDF as a ROS 2 package, with SRDF and ros2_control"),
     argument(
         "--process", choices=["fdm", "sla", "sls"], default=None, help="the printing process for 3MF: gaps are checked against it (fdm)"
@@ -63,6 +68,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         "ros2_control": ros,
         "process": options.process,
         "keep_frames": options.keep_frames,
+        "flat": options.flat,
         "split": options.split,
         "trees": options.trees,
         "drawings": options.drawings,

@@ -55,7 +55,7 @@ class _Component:
 
 
 @of_the_product
-def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
+def write_step(assembly: Assembly, *, flat: bool = False, strict: bool = False) -> Bundle:
     """Write all parts that have a shape as one STEP assembly (AP242) in the rest pose, in mm.
 
     Parts of the same shape and colour are instances of one product. Parts joined by fixed joints, unless that is all of them, are in a
@@ -63,6 +63,7 @@ def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
 
     Args:
         assembly: What to write.
+        flat: Write all parts side by side, each placed in the assembly's frame, with no sub-assemblies.
         strict: Refuse losses of motion, mass or shape; STEP holds no joints, so only a rigid assembly passes.
 
     Returns:
@@ -79,7 +80,7 @@ def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
     root = writer.root(assembly.name)
     rest = assembly.mechanism.rest_poses()
     products: dict[tuple[str, str], _Component] = {}
-    for group in _groups(assembly):
+    for group in _groups(assembly, flat=flat):
         above, place = root, SE3.identity()
         if group.name:
             above, place = writer.root(group.name), rest[group.parts[0]]
@@ -103,14 +104,14 @@ class _Group:
     parts: tuple[str, ...]
 
 
-def _groups(assembly: Assembly) -> list[_Group]:
+def _groups(assembly: Assembly, *, flat: bool) -> list[_Group]:
     """Return the parts with a shape, grouped by the body that they move with, in the order in which they are declared."""
     shaped = [name for name, part in assembly.parts.items() if _shape_key(part) is not None]
     body = rigid_groups(assembly.mechanism.joints, tuple(assembly.parts))
     members: dict[int, list[str]] = {}
     for name in shaped:
         members.setdefault(body[name], []).append(name)
-    if len(members) < 2:
+    if flat or len(members) < 2:
         return [_Group("", tuple(shaped))]
     names = Names(assembly.parts, any_text=True)
     return [_Group(names.claim(f"{parts[0]}_group") if len(parts) > 1 else "", tuple(parts)) for parts in members.values()]

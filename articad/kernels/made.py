@@ -27,7 +27,7 @@ def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
     """
     import build123d as cad  # noqa: PLC0415 - a traced run replaces the module
 
-    sizes = part.dimensions
+    sizes = dict(part.dimensions)
     places = {name: cad.Plane(frame.o, x_dir=frame.x, z_dir=frame.z) for name, frame in part.connectors.items()}
     for name, place in places.items():  # first, so that no fork loses its pin
         if f"{name}_gap" in sizes:

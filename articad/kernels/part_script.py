@@ -28,7 +28,10 @@ Json = dict[str, Any]
 
 
 class Dimensions(dict[str, Any]):
-    """Dimensions by name: `d["width"]`, or `d.width`."""
+    """Dimensions by name: `d["width"]`, or `d.width`; a dimension `clear` or `values` hides the method of that name."""
+
+    def __getattribute__(self, name: str) -> Any:
+        return self[name] if dict.__contains__(self, name) else super().__getattribute__(name)
 
     def __getattr__(self, name: str) -> Any:
         try:

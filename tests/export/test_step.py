@@ -83,6 +83,20 @@ def test_parts_that_are_fixed_together_are_a_sub_assembly_and_the_file_is_ap242(
     assert [name.replace("_", " ") for name in read_step(tmp_path / bundle.main).parts] == list(assembly.parts)
 
 
+def test_a_flat_file_has_all_parts_side_by_side_where_they_rest(assembly: Assembly, tmp_path: Path) -> None:
+    import build123d as bd
+
+    bundle = write_step(assembly, flat=True)
+    bundle.write(tmp_path)
+    read, rest = bd.import_step(tmp_path / bundle.main), assembly.mechanism.rest_poses()
+
+    assert [child.label for child in read.children] == [name.replace(" ", "_") for name in assembly.parts]
+    for child, name in zip(read.children, assembly.parts, strict=True):
+        placed = child.location.wrapped.Transformation()
+        matrix = np.array([[placed.Value(row, column) for column in (1, 2, 3, 4)] for row in (1, 2, 3)])
+        assert np.allclose(matrix, rest[name].matrix[:3], atol=1e-9)
+
+
 def test_the_same_assembly_is_the_same_bytes(assembly: Assembly) -> None:
     assert write_step(assembly).files == write_step(assembly).files
 

@@ -86,3 +86,12 @@ def test_a_change_of_the_common_script_is_seen_by_watch(design: Path) -> None:
     before = fingerprint(design)
     (design / "parts.py").write_text(COMMON + "\n")
     assert fingerprint(design) != before
+
+
+@pytest.mark.parametrize("name", ["clear", "values", "items", "get"])
+def test_a_dimension_may_have_the_name_of_a_method(name: str, design: Path) -> None:
+    file = design / "plan.json"
+    file.write_text(file.read_text().replace('"high"', f'"{name}"'))
+    (design / "parts.py").write_text(COMMON.replace("d.high", f"d.{name}"))
+    assembly = Assembly.from_plan(AssemblyPlan.load(design), design / "parts")
+    assert assembly.parts["plate"].mass is not None
