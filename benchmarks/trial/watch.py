@@ -4,7 +4,8 @@
 
 Each half second, every file that was written by hand (its name ends as stated, and it is in no folder that a tool makes) is compared with its
 last version: inserted and replaced characters count, also when they replace what was written before. A copy of a file that is there already
-counts nothing. The sums go to FOLDER/written.json: `seconds` since the watch began until the last change, `characters` in all, `final` characters in the last versions.
+counts nothing. The sums go to FOLDER/written.json: `seconds` since the watch began until the last change, `characters` in all, `final`
+characters in the last versions.
 The watch ends when FOLDER/done is there.
 """
 
@@ -50,7 +51,7 @@ def main() -> None:
             if (
                 not file.name.endswith(ends)
                 or file.name == "written.json"
-                or MADE & set(file.relative_to(folder).parts)
+                or any(MADE & {part, part.rstrip("0123456789_")} for part in file.relative_to(folder).parts)
                 or not file.is_file()
             ):
                 continue
