@@ -241,3 +241,14 @@ def test_a_json_report_with_hostile_names_reads_back_as_it_was() -> None:
 
     assert json.loads(out.getvalue()) == {"name": HOSTILE, "ä": "naïve ☃ 🙂"}
     assert "☃" in out.getvalue()
+
+
+def test_no_name_begins_a_line_or_a_column_of_its_own() -> None:
+    """A link of a stranger's file may be called `x`, newline, `no findings`."""
+    forged = "x\n  robot.urdf: no findings\ty"
+    speaking = terminal()
+    speaking.findings(Findings([Finding(code="E_READ", where=forged, message=f"{forged} is wrong.", hint=f"Rename {forged}.")]))
+    speaking.table(("part", "kg"), [(forged, 1.0)])
+    lines = out(speaking).splitlines()
+    assert [line for line in lines if line.lstrip().startswith("robot.urdf") and not line.startswith("     ")] == []
+    assert lines[-2].split() == ["part", "kg"]  # and one row below it

@@ -36,6 +36,7 @@ _WORTH_A_LINE_S = 2.0  # shorter steps are not reported
 _OBEYED = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u2064\u2066-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff]"
 )
+_BREAKING = re.compile("[\t\n]")
 _SHOWN_AT_ONCE = 3  # names in progress beside the bar: more do not fit into 80 columns
 
 
@@ -85,7 +86,7 @@ class Terminal:
         """
         if self.as_json or self.quiet or not rows:
             return
-        cells = [[plain(str(cell)) for cell in row] for row in rows]
+        cells = [[on_one_line(str(cell)) for cell in row] for row in rows]
         if self._is_watched(self.out):
             self._rich_table(columns, cells, right)
             return
@@ -254,8 +255,9 @@ class Terminal:
         from articad.findings import measured_against
 
         numbers = measured_against(finding)
-        hint = f"\n    {finding['hint']}" if finding["hint"] else ""
-        return f"  {code} " + plain(f"{finding['where']}: {finding['message']}{numbers}{hint}")
+        hint = f"\n{finding['hint']}" if finding["hint"] else ""
+        told = plain(f"{on_one_line(finding['where'])}: {finding['message']}{numbers}{hint}")
+        return f"  {code} " + told.replace("\n", "\n    ")  # no name in a message begins a line of its own
 
     def _rich_table(self, columns: Sequence[str], cells: Sequence[Sequence[str]], right: Sequence[int]) -> None:
         from rich.box import SIMPLE_HEAD
@@ -282,6 +284,11 @@ def plain(text: str) -> str:
     Escape sequences and bidirectional controls are shown by their code points; newlines and tabs stay.
     """
     return _OBEYED.sub(_spelled, text)
+
+
+def on_one_line(text: str) -> str:
+    """Return text as `plain` does, also without newlines and tabs: a name may not look like another line or column."""
+    return _BREAKING.sub(_spelled, plain(text))
 
 
 def _spelled(found: re.Match[str]) -> str:

@@ -97,11 +97,14 @@ class Workbench:
         """Save a plan as the current one of a design.
 
         Raises:
-            ReadError: If it is too large, or holds characters that no file should.
+            ReadError: If it is too large, or holds characters or numbers that no file should.
         """
         if spoiled(plan) is not None:
             raise ReadError.at(name, f"The plan holds {SPOILED}.", "Write it without them.")
-        content = (json.dumps(plan, indent=1, ensure_ascii=False) + "\n").encode()
+        try:
+            content = (json.dumps(plan, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+        except ValueError:  # also a whole number of thousands of digits
+            raise ReadError.at(name, "The plan holds a number that is not finite or has thousands of digits.", "Give numbers.") from None
         if len(content) > PLAN_BYTES:
             raise ReadError.at(name, f"The plan has {len(content)} bytes; at most {PLAN_BYTES} are accepted.", "Use derived parts.")
         file = self.design(name, new=True) / "plan.json"

@@ -11,6 +11,7 @@ from articad.aliases import Json
 from articad.errors import ReadError, did_you_mean
 
 _INDEX: Final = re.compile(r"\[(\d+)\]")
+_DIGITS: Final = 9  # of the number of an entry: no list is longer, and Python reads no number of thousands of digits
 _OPTIONAL: Final = ("rest_pose", "fit", "dimensions")  # objects that a plan may leave out
 
 
@@ -76,7 +77,7 @@ def _index(holder: list[Any], step: str, address: str) -> int:
     names = _names(holder)
     if step in names:
         return names.index(step)
-    if step.isdigit() and int(step) < len(holder):
+    if step.isdecimal() and len(step) <= _DIGITS and int(step) < len(holder):
         return int(step)
     raise _lost(address, step, [name for name in names if name])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -68,3 +69,21 @@ def _no_commands(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr("articad.mcp.workbench.Workbench.run", run)
     assert json.dumps("")
+
+
+@pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf, 10**5000], ids=["nan", "inf", "-inf", "digits"])
+def test_a_number_that_json_does_not_have_is_not_written_into_a_plan(number: float, tmp_path: Path) -> None:
+    (tmp_path / "box").mkdir()
+    before = (examples.folder("wardrobe") / "plan.json").read_bytes()
+    (tmp_path / "box" / "plan.json").write_bytes(before)
+    assert "not finite" in told(tmp_path, "edit_plan", design="box", changes={"parameters.width": number})
+    assert (tmp_path / "box" / "plan.json").read_bytes() == before
+
+
+@pytest.mark.parametrize("address", ["parts." + "9" * 5000, "parts.\u00b2", "parts[99999999999]", "parts.-1", "", ".", "parts."])
+def test_an_address_of_nothing_is_refused_in_words(address: str, tmp_path: Path) -> None:
+    (tmp_path / "box").mkdir()
+    (tmp_path / "box" / "plan.json").write_bytes((examples.folder("wardrobe") / "plan.json").read_bytes())
+    for value in (1, {"name": "x"}, None):
+        answer = told(tmp_path, "edit_plan", design="box", changes={address: value})
+        assert "Traceback" not in answer
