@@ -19,6 +19,7 @@ _FROM: Final = {
     (0, -1, 0): "from behind",
 }  # fmt: skip
 
+_UPWARDS: Final = 0.7  # vertical part of a unit vector, from which a part comes from below
 _AXIS: Final = 1e-6  # of a unit vector: it points along an axis
 
 Vector3 = tuple[float, float, float]
@@ -105,7 +106,8 @@ def words_of(step: AssemblyStep) -> str:
     if not step.moves:
         return f"Start with {what}."
     ways = [_way(move) for move in step.moves]
-    return f"Put {what} in place: {', then '.join(ways)}."
+    over = ", with the assembly turned over or held up" if any(move.direction[2] > _UPWARDS for move in step.moves) else ""
+    return f"Put {what} in place: {', then '.join(ways)}{over}."
 
 
 def _way(move: Move) -> str:

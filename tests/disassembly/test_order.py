@@ -15,7 +15,7 @@ from articad.assembly import Assembly
 from articad.connectors import SE3
 from articad.disassembly.order import assembly_order
 from articad.disassembly.poses import OtherPose
-from articad.disassembly.steps import AssemblyOrder, AssemblyStep
+from articad.disassembly.steps import AssemblyOrder, AssemblyStep, words_of
 from articad.disassembly.ways import Ways
 from articad.errors import UnknownJointError
 from articad.geometry.part import Part
@@ -214,3 +214,13 @@ def test_a_drawer_that_a_door_bars_goes_in_while_the_door_is_open() -> None:
     order = ordered(solids, joints, "case", OtherPose({"hinge": 1.5}, opened))
     assert order.ok
     assert names(order) in ([("case",), ("thing",), ("door",)], [("case",), ("door",), ("thing",)])
+
+
+def test_a_part_that_only_comes_from_below_is_put_in_place_with_the_assembly_turned_over() -> None:
+    # a plug in a pocket that opens downwards, and a lid on top: the lid is lowered, the plug comes from below
+    body = block((0, 40), (0, 40), (0, 30)) - block((15, 25), (15, 25), (-1, 12))
+    solids = {"body": body, "plug": block((15, 25), (15, 25), (0, 12)), "lid": block((5, 35), (5, 35), (30, 34))}
+    order = ordered(solids, [fixed("in", "body", "plug"), fixed("on", "body", "lid")], "body")
+    words = {step.parts[0]: words_of(step) for step in order.steps}
+    assert words["plug"] == "Put plug in place: from below, with the assembly turned over or held up."
+    assert words["lid"] == "Put lid in place: from above."
