@@ -71,6 +71,8 @@ class Trial:
     mimics: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
     felt: FloatArray | None = None
     load: FloatArray | None = None
+    borne: list[int] = field(default_factory=list)  # free bodies that rest on joints, at once or on each other
+    geared: Any = None  # the model with rotors that match the mass of free bodies that rest on joints
     longest: dict[int, float] = field(default_factory=dict)  # range of a hinge that one stroke covers [rad], by joint
 
     @classmethod
@@ -103,7 +105,9 @@ class Trial:
         """
         self._hold()
         if not self.outcome.exploded:
+            own, self.model = self.model, self.geared
             self._drive(drivers, opened)
+            self.model = own
             self._let_go()
         return self.outcome
 
@@ -127,7 +131,7 @@ class Trial:
     def _hold(self) -> None:
         """Hold every joint at rest against gravity and contact, and what rests on it."""
         held, own = self._hinged_dofs(), self.model
-        self.model = self._carry(held)
+        self.model = self.geared = self._carry(held)
         self._stand(held)
         self.model, self.load = own, None
 
@@ -162,7 +166,7 @@ class Trial:
         if self.outcome.exploded or not rotors.any():
             self.reset()
             return model
-        self.load = resting - pressing
+        self.load, self.borne = resting - pressing, self._resting()
         return _heavier(model, held, rotors)
 
     def _matching(self, held: NDArray[np.int_]) -> FloatArray:
@@ -204,6 +208,18 @@ class Trial:
         """True for a body with a free joint."""
         joint = int(self.model.body_jntadr[body])
         return joint >= 0 and self.model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_FREE)
+
+    def _resting(self) -> list[int]:
+        """Return the free bodies of one part that rest on what joints move, at once or on each other."""
+        pairs = [self.model.geom_bodyid[self.data.contact[index].geom].tolist() for index in self._supporting()]
+        alone = {body for body in range(self.model.nbody) if self._floats(body)} - set(self.model.body_parentid.tolist())
+        found: set[int] = set()
+        for _ in alone:
+            for pair in pairs:
+                for one, other in (pair, pair[::-1]):
+                    if one in alone and (other in found or (other not in alone and self._joints_above(other))):
+                        found.add(one)
+        return sorted(found)
 
     def _equalities(self) -> NDArray[np.bool_]:
         """Return which constraints are equalities."""
@@ -277,8 +293,12 @@ class Trial:
         return found
 
     def _stroke(self, joint: int, following: frozenset[int]) -> Stroke:
-        """Drive one joint over its range with its followers, all others held."""
+        """Drive one joint over its range with its followers, all others held.
+
+        Free bodies of one part that rest on what joints move may fall off it, so they have no weight here. What lies in the way keeps its own.
+        """
         self.reset()
+        self.data.xfrc_applied[self.borne, :3] = -self.model.body_mass[self.borne, None] * self.model.opt.gravity
         turns = self.model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_HINGE)
         mean_pace = PACE_RAD_S if turns else PACE_M_S
         if following:

@@ -37,10 +37,10 @@ def tray(name: str, joint: str, mass: float, x: float, inside: str = "") -> str:
     return f'<body name="{name}" pos="{x} 0 0.5">{joint.format(name=f"{name}_joint")}{box((0.1, 0.1, 0.005), mass, (0.11, 0, 0))}{inside}</body>'
 
 
-def objections(folder: Path, bodies: str) -> tuple[str, ...]:
+def objections(folder: Path, bodies: str, *, driven: bool = False) -> tuple[str, ...]:
     path = folder / "model.xml"
     path.write_text(MODEL.format(bodies))
-    outcome = try_out("mujoco", path, opened=tuple(re.findall('joint name="([^"]*)"', bodies)))  # held, not driven
+    outcome = try_out("mujoco", path, opened=() if driven else tuple(re.findall('joint name="([^"]*)"', bodies)))
     assert outcome.loads, outcome.message
     return tuple(str(finding) for finding in SimulationVerdict(str(path), (outcome,)).findings if finding.severity == "error")
 
@@ -69,8 +69,20 @@ def test_a_light_part_carries_free_bodies_of_any_mass(seed: int, tmp_path: Path)
     assert not objections(tmp_path, laden(seed))
 
 
-def test_a_tray_of_200_g_carries_2_kg(tmp_path: Path) -> None:
-    assert not objections(tmp_path, tray("tray", JOINTS[0], 0.2, 0.0) + free("block", (0.03, 0.03, 0.03), 2.0, (0.1, 0, 0.535)))
+@pytest.mark.parametrize("joint", JOINTS[:2])
+def test_a_tray_of_200_g_carries_2_kg_and_moves_with_them(joint: str, tmp_path: Path) -> None:
+    laden = tray("tray", joint, 0.2, 0.0) + free("block", (0.03, 0.03, 0.03), 2.0, (0.1, 0, 0.535))
+    assert not objections(tmp_path, laden, driven=True)
+
+
+def test_a_free_body_in_the_way_stops_a_drawer(tmp_path: Path) -> None:
+    """It stands on the floor and touches nothing at rest: its weight is its own."""
+    floor = '<geom type="plane" size="1 1 0.1"/>'
+    drawer = (
+        f'<body name="drawer" pos="0 0 0.1"><joint name="pull" type="slide" axis="1 0 0" range="0 0.3"/>{box((0.1, 0.1, 0.03), 0.2)}</body>'
+    )
+    crate = free("crate", (0.1, 0.1, 0.1), 100.0, (0.3, 0, 0.1))
+    assert any("E_SIM_RANGE" in finding for finding in objections(tmp_path, floor + drawer + crate, driven=True))
 
 
 @pytest.mark.parametrize("ratio", [1.0, 30.0, 1000.0])
