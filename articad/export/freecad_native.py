@@ -311,7 +311,9 @@ class _Writer:
             return [self._add(body, "Part::Feature", *shape, label=label)]
         source = self.names.claim(f"{part['object']}_source")
         self.hidden.append(source)
-        self._add(source, "App::Link", _target("LinkedObject", self.shapes[part["source"]]), extension="LinkExtension")
+        target = _target("LinkedObject", self.shapes[part["source"]])
+        with_placement = _truth("LinkTransform", value=True)  # of the shape, which a link leaves out otherwise
+        self._add(source, "App::Link", target, with_placement, extension="LinkExtension")
         plane = [_vector("Base", part["plane"]["point"], "Position"), _vector("Normal", part["plane"]["normal"], "Direction")]
         image = self._add(body, "Part::Mirroring", _link("Source", source), *plane, *shape, label=label, expressions=part["expressions"])
         return [source, image]

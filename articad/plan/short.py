@@ -7,6 +7,7 @@ alone. What it does not understand stays as it is, so that reading the plan repo
 from __future__ import annotations
 
 import copy
+import math
 import re
 from collections.abc import Callable, Mapping
 from typing import Any, Final
@@ -235,7 +236,7 @@ FEATURES: Final = (
 
 
 def _image(frame: Json | None, derive: Any) -> Json | None:
-    """Return a place moved as a copy is moved: by a plane across an axis, or by a shift; None for other motions."""
+    """Return a place moved as a copy is moved: by a plane across an axis of the assembly, or by a shift; None for other motions."""
     if frame is None or not isinstance(derive, dict):
         return None
     image = {key: [*vector] for key, vector in frame.items() if key in "ozx" and _is_vector(vector)}
@@ -244,18 +245,30 @@ def _image(frame: Json | None, derive: Any) -> Json | None:
     plane, move = derive.get("plane"), derive.get("move")
     if derive.get("op") == "mirror" and isinstance(plane, dict):
         normal, through = plane.get("normal"), plane.get("point", [0, 0, 0])
-        if not _is_vector(through) or not isinstance(normal, list) or sorted(map(str, normal)) not in (["0", "0", "1"], ["-1", "0", "0"]):
+        across = [] if not _is_vector(normal) else [index for index, value in enumerate(normal) if not _is_zero(value)]
+        if not _is_vector(through) or len(across) != 1 or not _is_number(normal[across[0]]):
             return None
-        axis = next(index for index, value in enumerate(normal) if str(value) != "0")
+        (axis,) = across
         for vector in image.values():
             vector[axis] = _negative(vector[axis])
-        if (point := through[axis]) not in (0, "0"):
+        if not _is_zero(point := through[axis]):
             image["o"][axis] = f"2*({point})+({image['o'][axis]})"
         return image
     if derive.get("op") == "rigid" and isinstance(move, dict) and set(move) <= {"at"} and _is_vector(shift := move.get("at", [0, 0, 0])):
-        image["o"] = [a if b in (0, "0") else f"({a})+({b})" for a, b in zip(image["o"], shift, strict=True)]
+        image["o"] = [a if _is_zero(b) else f"({a})+({b})" for a, b in zip(image["o"], shift, strict=True)]
         return image
     return None
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        return math.isfinite(float(value))
+    except (TypeError, ValueError):
+        return False
+
+
+def _is_zero(value: Any) -> bool:
+    return _is_number(value) and float(value) == 0.0
 
 
 def _negative(value: Any) -> Any:

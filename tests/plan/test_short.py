@@ -301,9 +301,10 @@ def test_a_side_that_is_a_list_is_reported_at_its_address() -> None:
     assert [finding.where for finding in refused.value.findings] == ["joints.swing.pin_on"]
 
 
-def test_a_mirror_plane_of_texts_is_that_of_numbers() -> None:
+@pytest.mark.parametrize("normal", [["0", "0", "1"], [0.0, 0.0, 1.0], [0, 0.0, 2.5]])
+def test_a_mirror_plane_of_texts_or_decimals_is_that_of_whole_numbers(normal: list[object]) -> None:
     plan = copy.deepcopy(GATE)
-    plan["parts"]["twin"]["derive"]["plane"]["normal"] = ["0", "0", "1"]
+    plan["parts"]["twin"]["derive"]["plane"]["normal"] = normal
     numbers = copy.deepcopy(GATE)
     numbers["parts"]["twin"]["derive"]["plane"]["normal"] = [0, 0, 1]
     first, second = (expanded(each)["joints"] for each in (plan, numbers))

@@ -165,6 +165,7 @@ class _Writer:
             self._dimensions(part, container, None)
             source = container.newObject("App::Link", f"{part['object']}_source")
             source.LinkedObject = self.shapes[part["source"]]
+            source.LinkTransform = True  # with the placement of the shape, which a link leaves out otherwise
             self.hidden.append(source.Name)
             image = container.newObject("Part::Mirroring", f"{part['object']}_body")
             image.Source = source
