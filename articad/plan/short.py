@@ -245,8 +245,8 @@ def _image(frame: Json | None, derive: Any) -> Json | None:
     plane, move = derive.get("plane"), derive.get("move")
     if derive.get("op") == "mirror" and isinstance(plane, dict):
         normal, through = plane.get("normal"), plane.get("point", [0, 0, 0])
-        across = [] if not _is_vector(normal) else [index for index, value in enumerate(normal) if not _is_zero(value)]
-        if not _is_vector(through) or len(across) != 1 or not _is_number(normal[across[0]]):
+        across = [at for at, value in enumerate(normal) if not _is_zero(value)] if isinstance(normal, list) and len(normal) == 3 else []
+        if not isinstance(normal, list) or not _is_vector(through) or len(across) != 1 or not _is_number(normal[across[0]]):
             return None
         (axis,) = across
         for vector in image.values():
