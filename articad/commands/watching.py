@@ -117,7 +117,7 @@ def _handler(served: PageServer) -> type[BaseHTTPRequestHandler]:
                 self.send_error(HTTPStatus.NOT_FOUND)
 
         def _answer(self, kind: str, text: str) -> None:
-            content = text.encode()
+            content = text.encode(errors="backslashreplace")  # what a script says may hold half of a surrogate pair
             self.send_response(HTTPStatus.OK)
             self.send_header("Content-Type", kind)
             self.send_header("Content-Length", str(len(content)))

@@ -290,3 +290,12 @@ def test_bash_completes(words: str, expected: str, capsys: pytest.CaptureFixture
 
     told = subprocess.run(["bash", "-c", f"{script}\n{asked}"], capture_output=True, text=True, check=True)
     assert told.stdout.split() == [expected]
+
+
+def test_a_page_is_answered_whatever_a_script_said() -> None:
+    """Half of a surrogate pair is no UTF-8."""
+    with PageServer() as server:
+        server.error = ("bad \ud800 <script>",)
+        assert "bad \\ud800 &lt;script&gt;" in urllib.request.urlopen(server.address, timeout=100).read().decode()
+        server.page = "whole \udfff"
+        assert urllib.request.urlopen(server.address, timeout=100).read() == b"whole \\udfff"
