@@ -194,10 +194,9 @@ class _Writer:
     def _body(self, part: Json, container: Any) -> Any:
         """Copy a body with its features, and the dimensions that drive it, from the document of a part script."""
         source = App.openDocument(str(Path(part["file"]).resolve()), True)
-        before = {item.Name for item in self.document.Objects}
-        self.document.copyObject([source.getObject(part["body"])], True)
+        new = self.document.copyObject([source.getObject(part["body"])], True, True)  # with all that it needs, and all of it told
         App.closeDocument(source.Name)
-        copied = [item for item in self.document.Objects if item.Name not in before]
+        copied = sorted(new, key=lambda item: item.ID)  # as they were made
         (body,) = [item for item in copied if item.TypeId == "PartDesign::Body"]
         values = [item for item in copied if item.TypeId == "App::VarSet"]
         body.Label = f"{part['name']} body"
