@@ -25,7 +25,8 @@ if TYPE_CHECKING:
         "--collision",
         choices=["pieces", "solid", "hull"],
         default=None,
-        help="what simulators collide with: convex pieces inside the parts, the parts' own meshes, or their hulls (pieces)",
+        help="what simulators collide with: convex pieces inside the parts, the parts' own fine meshes, which are then drawn, too, or their hulls "
+        "(pieces)",
     ),
     argument(
         "--actuators",
