@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -15,9 +16,10 @@ from articad.errors import ArticadError
 from articad.findings import Finding, Findings
 from articad.runs.run import Run
 from tests.agents.openai_stub import Canned, openai_stub
-from tests.agents.test_drift import FixedKernel, OtherKernel, again, moved, recorded
+from tests.agents.test_drift import OtherKernel, again, moved, recorded
 from tests.agents.test_live import question
 from tests.agents.test_llm import request, run_at
+from tests.crash.stand_in import FixedKernel
 
 __all__ = ["recorded"]
 
@@ -48,7 +50,7 @@ def test_a_step_of_those_that_the_hint_lists_has_a_reply(tmp_path: Path) -> None
     replay = Replay(record(tmp_path / "run"))
     finding = of(said(lambda: replay.complete(request("design/2"))), "E_REPLAY_MISS", "It has: design/1")
     listed = finding.hint.removeprefix("It has: ").rstrip(".").split(", ")
-    assert not [step for step in listed if said(lambda step=step: replay.complete(request(step)))]
+    assert not [step for step in listed if said(partial(replay.complete, request(step)))]
 
 
 def test_another_prompt_that_is_recorded_again_is_answered_strictly(tmp_path: Path) -> None:

@@ -248,7 +248,10 @@ def brought_below(root: Any, folder: Path, _finding: Finding, _match: Match) -> 
 
 
 def block_mesh(mesh: TriMesh) -> Change:
-    return lambda _root, folder, _finding, _match: (folder / "block.stl").write_bytes(write_stl(mesh)) and None
+    def put(_root: Any, folder: Path, _finding: Finding, _match: Match) -> None:
+        (folder / "block.stl").write_bytes(write_stl(mesh))
+
+    return put
 
 
 def closed(_root: Any, folder: Path, _finding: Finding, _match: Match) -> None:
@@ -541,13 +544,16 @@ def test_hulls_that_jam_are_divided_into_pieces(from_outside: bool, tmp_path: Pa
 
 @pytest.mark.parametrize(
     ("words", "small", "large"),
-    [("Raise --budget", {"budget": 0.0}, {"budget": 5.0}), ("Raise --certify", {"certified": 1e-9}, {"certified": 30.0})],
+    [
+        ("Raise --budget", AuditOptions(engines=False, budget=0.0), AuditOptions(engines=False, budget=5.0)),
+        ("Raise --certify", AuditOptions(engines=False, certified=1e-9), AuditOptions(engines=False, certified=30.0)),
+    ],
 )
-def test_a_larger_budget_lets_the_audit_finish(words: str, small: dict[str, float], large: dict[str, float], tmp_path: Path) -> None:
+def test_a_larger_budget_lets_the_audit_finish(words: str, small: AuditOptions, large: AuditOptions, tmp_path: Path) -> None:
     path = defects.write(defects.stand(tmp_path), tmp_path)
-    before = audit_file(path, AuditOptions(engines=False, **small)).findings
+    before = audit_file(path, small).findings
     finding = only(before, "W_AUDIT_NOT_CHECKED", words)
-    assert_heals(finding, before, audit_file(path, AuditOptions(engines=False, **large)).findings)
+    assert_heals(finding, before, audit_file(path, large).findings)
 
 
 def test_parts_that_are_spread_out_are_all_compared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

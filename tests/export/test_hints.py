@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from articad.export.threemf import write_3mf
 from articad.export.urdf import write_urdf
 from articad.findings import Finding, Findings
 from articad.kinematics import declare
-from articad.kinematics.joints import JointType
+from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.resolve import Fit
 from articad.runs.run import Run, RunRequest, open_or_create
@@ -46,7 +47,7 @@ def of(found: Findings, code: str, words: str) -> Finding:
 @pytest.mark.parametrize("writer", WRITERS)
 def test_without_strict_a_joint_becomes_what_the_hint_says(writer: str) -> None:
     for kind, joint in JOINTS.items():
-        before = said(lambda joint=joint: WRITERS[writer](pair(joint), strict=True))
+        before = said(partial(WRITERS[writer], pair(joint), strict=True))
         for finding in before.of("E_UNREPRESENTABLE"):
             told = re.search(r"Without strict it becomes (.*)\.$", finding.hint)
             assert told, finding.hint
@@ -98,19 +99,20 @@ def test_loops_that_are_no_straight_lines_are_written_in_each_way_of_the_hint() 
     before = said(lambda: write_urdf(bounded, loops="mimic"))
     finding = of(before, "E_MIMIC_FIT", "Use loops none, isaac or drake, or MJCF")
     for loops in re.findall(r"none|isaac|drake", finding.hint):
-        assert_heals(finding, before, said(lambda loops=loops: write_urdf(bounded, loops=loops)))
+        assert_heals(finding, before, said(partial(write_urdf, bounded, loops=loops)))
     assert_heals(finding, before, said(lambda: write_mjcf(bounded)))
 
 
 def test_drives_that_are_stated_are_not_assumed() -> None:
-    def written(**stated: tuple[float, ...]) -> Findings:
-        assembly = pair(JOINTS["revolute"])
-        joints = [replace(joint, **stated) for joint in assembly.joints]
+    assembly = pair(JOINTS["revolute"])
+
+    def written(joints: Sequence[Joint]) -> Findings:
         return write_urdf(replace(assembly, mechanism=Mechanism(assembly.mechanism.parts, "base", joints))).findings
 
-    before = written()
+    before = written(assembly.joints)
     finding = of(before, "I_EFFORT_ASSUMED", "State them where the drives are known")
-    assert_heals(finding, before, written(effort=(500.0,), velocity=(2.0,), damping=(1.0,)))
+    stated = [replace(joint, effort=(500.0,), velocity=(2.0,), damping=(1.0,)) for joint in assembly.joints]
+    assert_heals(finding, before, written(stated))
 
 
 # ---------------------------------------------------------------------- runs

@@ -54,6 +54,10 @@ def mesh_at(name: str) -> Callable[[Path], None]:
     return put
 
 
+def other_model(folder: Path) -> None:
+    (folder / "other.sdf").write_text('<sdf version="1.9"><model name="o"><link name="x"/></model></sdf>')
+
+
 def nothing(_folder: Path) -> None:
     """Leave the folder as it is."""
 
@@ -84,7 +88,7 @@ CASES = [
     Case("W_IMPORT_DROPPED", "a.urdf", robot(SHAPE.format('<cone radius="1"/>')), "Use a box, cylinder, sphere or mesh", robot(SHAPE.format('<sphere radius="1"/>'))),
     Case("W_IMPORT_DROPPED", "a.urdf", robot(MASS.format(-1)), "Give a positive mass", robot(MASS.format(1))),
     Case("W_IMPORT_DROPPED", "a.urdf", robot(SHAPE.format('<sphere radius="0"/>')), "Give it a size", robot(SHAPE.format('<sphere radius="1"/>'))),
-    Case("W_IMPORT_DROPPED", "a.sdf", '<sdf version="1.9"><model name="m"><link name="base"/><include><uri>other.sdf</uri></include></model></sdf>', "Put it below the folder of the file", '<sdf version="1.9"><model name="m"><link name="base"/><include><uri>other.sdf</uri></include></model></sdf>', place=lambda folder: (folder / "other.sdf").write_text('<sdf version="1.9"><model name="o"><link name="x"/></model></sdf>') and None),
+    Case("W_IMPORT_DROPPED", "a.sdf", '<sdf version="1.9"><model name="m"><link name="base"/><include><uri>other.sdf</uri></include></model></sdf>', "Put it below the folder of the file", '<sdf version="1.9"><model name="m"><link name="base"/><include><uri>other.sdf</uri></include></model></sdf>', place=other_model),
     Case("W_IMPORT_MUJOCO", "a.xml", plain(more="<joint/>"), "Correct what the warning names", plain()),
     Case("E_READ", "a.urdf", "<robot name='r'><link name='a'>", "Correct the file at the named place", "<robot name='r'><link name='a'/></robot>"),
     Case("E_READ", "a.urdf", joint(f'<origin xyz="x 0 0"/>{LIMIT}'), "Correct the file at the named place", joint(f'<origin xyz="0 0 0"/>{LIMIT}')),

@@ -21,8 +21,8 @@ from articad.findings import Finding, Findings
 from articad.geometry import box, cylinder, merged, sphere
 from articad.interference.scene import Scene
 from articad.kinematics.mechanism import Mechanism
-from tests.interference.mechanisms import IDENTITY, Fit, at, block_with_bore, fixed, joint, manifold_mesh
-from tests.interference.test_certificate import arm, without_triangle
+from tests.interference.mechanisms import IDENTITY, Fit, at, block_with_bore, fixed, joint, manifold_mesh, without_triangle
+from tests.interference.test_certificate import arm
 from tests.interference.test_check import check
 from tests.interference.test_diagnosis import FORK_HINGE, OUT, PANELS, PINS, TONGUE, cabinet, findings, flap, fork, rods
 from tests.obedience import worse

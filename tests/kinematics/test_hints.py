@@ -17,8 +17,8 @@ from articad.findings import Findings
 from articad.kinematics import Mechanism
 from articad.kinematics.configuration import Configuration
 from tests.kinematics.linkages import at, four_bar, from_rest, impossible, joint, misaligned, parallelogram, scissor
+from tests.kinematics.overconstrained import parallel_rods, slack_bars
 from tests.kinematics.test_inexact import reframed, with_digits
-from tests.kinematics.test_mobility import parallel_rods, slack_bars
 from tests.obedience import assert_heals
 
 Match = re.Match[str]
