@@ -22,6 +22,7 @@ from mcp import Client, StdioServerParameters
 from mcp.client.stdio import stdio_client
 
 from articad import examples
+from articad.kernels.parts import script_file
 from articad.plan.short import expanded
 
 GOAL_SENT = 12_121  # bytes that a model writes: half of what the wardrobe took in the long form
@@ -70,7 +71,7 @@ async def design(agent: Counting, name: str) -> None:
     await agent.call("docs", dialect="build123d", intent="round the vertical edges")
     for part in expanded(plan)["parts"]:
         if "derive" not in part:
-            script = (folder / "parts" / f"{part['name']}.py").read_text()
+            script = script_file(folder / "parts", part["name"], "build123d").read_text()
             await agent.call("build_part", design="mine", part=part["name"], script=script)
     built = await agent.call("build", design="mine")
     await agent.call("render", design="mine")

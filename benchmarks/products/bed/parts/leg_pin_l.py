@@ -1,7 +1,0 @@
-from build123d import Cylinder, Pos, Rot
-
-
-def build(part):
-    d = part.dimensions
-    side = -1
-    return part.made(Pos(side * d.thick / 2) * Rot(Y=90) * Cylinder(d.radius, d.thick))
