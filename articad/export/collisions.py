@@ -169,7 +169,7 @@ def _features(name: str, kind: Collision, formed: list[_Formed]) -> list[Feature
     less = max((pieces.less for pieces in found), default=0.0)
     if missing > EXACT_MM or less > HULL_SHARE:
         count, bound = sum(len(pieces.pieces) for pieces in found), max(pieces.bound for pieces in found)
-        detail = f"{count} of them, up to {missing:.3g} mm of the solid left out, {100 * less:.3g} % of its volume"
+        detail = f"{count} of them, up to {round(missing, 6):.3g} mm of the solid left out, {100 * less:.3g} % of its volume"
         features.append(Feature("collision.pieces", where, detail + (f", more than {bound:.3g} mm" if missing > bound else "")))
     return features
 

@@ -169,4 +169,4 @@ def _keys() -> str:
         ("Esc", "deselect, show all parts, or end measuring"),
     ]
     listed = "".join(f"<tr><td><kbd>{escape(key)}</kbd></td><td>{escape(what)}</td></tr>" for key, what in rows)
-    return f'<details class="section"><summary><h2>Keys</h2></summary><table><tbody>{listed}</tbody></table></details>\n'
+    return f'<details class="section keys"><summary><h2>Keys</h2></summary><table><tbody>{listed}</tbody></table></details>\n'

@@ -280,7 +280,7 @@ def _pair(pair: Json, known: set[str]) -> list[Cell]:
     strength = pair["strength"]
     known_by = {
         "certified": "proven",
-        "sampled": f"{strength.get('poses')} poses sampled",
+        "sampled": "one pose sampled" if strength.get("poses") == 1 else f"{strength.get('poses')} poses sampled",
         "waived": f"allowed: {strength.get('reason')}",
         "not_checked": f"not checked: {strength.get('reason')}",
     }[strength["kind"]]
