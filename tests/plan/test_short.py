@@ -245,7 +245,7 @@ def test_what_is_wrong_in_a_short_plan_is_reported_at_its_address() -> None:
     assert {("E_MATERIAL_UNKNOWN", "parts.leaf.material"), ("E_EXPRESSION", "joints.swing.angle_deg[0]")} <= found
 
 
-ODD = (None, 0, 1.5, "", "a.b", [], [1], [[1]], ["parent"], {}, {"a": 1}, True, "hinge", [0, 0, "0"])
+ODD: tuple[Any, ...] = (None, 0, 1.5, "", "a.b", [], [1], [[1]], ["parent"], {}, {"a": 1}, True, "hinge", [0, 0, "0"])
 ADDED = (
     "derive",
     "name",
