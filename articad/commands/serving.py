@@ -26,7 +26,10 @@ def _mcp(options: argparse.Namespace, _terminal: Terminal) -> Report:
         from articad.mcp.server import make_server
     except ImportError as error:
         raise ReadError(f"The server needs the package mcp ({error.name} is missing): pip install 'articad[mcp]'.", path="mcp") from error
-    make_server(options.root).run("stdio")
+    try:
+        make_server(options.root).run("stdio")
+    except* BrokenPipeError:  # the client went away while a tool worked: nobody is left to answer
+        pass
     return {"schema": "articad.served/1", "ok": True, "findings": []}
 
 

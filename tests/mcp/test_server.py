@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import subprocess
 import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -341,3 +342,27 @@ def processes_in(root: Path) -> list[int]:
         if b"certify" in words and any(word.startswith(str(root).encode()) for word in words):
             found.append(int(folder.name))
     return found
+
+
+def test_a_client_that_goes_away_while_a_tool_works_is_no_defect(tmp_path: Path) -> None:
+    shutil.copytree(examples.folder("four_bar"), tmp_path / "bar")
+    words = [sys.executable, "-m", "articad.cli", "mcp", "--root", str(tmp_path)]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as server:
+        assert server.stdin is not None
+        assert server.stdout is not None
+        assert server.stderr is not None
+        hello = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "1"}}
+        messages: list[Json] = [
+            {"id": 1, "method": "initialize", "params": hello},
+            {"method": "notifications/initialized"},
+            {"id": 2, "method": "tools/call", "params": {"name": "build", "arguments": {"design": "bar"}, "_meta": {"progressToken": 1}}},
+        ]
+        for message in messages:
+            server.stdin.write(json.dumps({"jsonrpc": "2.0", **message}).encode() + b"\n")
+            server.stdin.flush()
+        answers = (json.loads(line) for line in server.stdout)
+        assert any(answer.get("method") == "notifications/progress" for answer in answers), "the tool works"
+        server.stdout.close()
+        server.stdin.close()
+        assert server.wait(60) == 0
+        assert server.stderr.read() == b""
