@@ -281,6 +281,7 @@ def _draw(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 
 def _faults(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.errors import ReadError, did_you_mean
     from articad.kernels.choice import kernel_named
     from articad_bench.fault_run import FaultRun
     from articad_bench.fault_table import alarms_line
@@ -290,6 +291,11 @@ def _faults(options: argparse.Namespace, terminal: Terminal) -> Report:
     tools = Tools(kernel_named("build123d", sandbox=sandbox_level(options)), build_cache(options))
     run = FaultRun.of(options.names, options.some)
     run = FaultRun(run.faults, () if options.cases else run.products)
+    known = {name for fault in run.faults for name in (fault.name, fault.kind.name)}
+    for name in options.cases:
+        if name not in known:
+            message = f"There is no case or kind of mistake {name!r} of these products.{did_you_mean(name, known)}"
+            raise ReadError.at("bench", message, "articad bench faults --out DIR writes the page faults.md, which lists all kinds.")
 
     def again(row: FaultRow) -> bool:
         is_chosen = not {row.case, row.kind}.isdisjoint(options.cases)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from articad.cli import main
 from articad.findings import Finding
 from articad.kernels.kernel import BuildCache
 from articad.plan.remedies import advised
@@ -240,3 +241,8 @@ def test_all_cases(tmp_path: Path) -> None:
     assert told["alarms"]
     assert not any(told["alarms"].values())
     assert {found["case"] for found in told["rows"] if found["escaped"]} <= {found["case"] for found in stored["rows"] if found["escaped"]}
+
+
+def test_a_case_that_does_not_exist_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bench", "faults", "four_bar", "--case", "origin_1m", "--out", str(tmp_path)]) != 0
+    assert "no case or kind of mistake 'origin_1m'" in capsys.readouterr().err
