@@ -76,6 +76,7 @@ WITHOUT = {
         ["W_LOOK_SHAPE", "W_LOOK_PROPORTION", "W_LOOK_ORIENTATION", "E_VERDICT_PLACEMENT", "E_VERDICT_INTERFERENCE", "E_VERDICT_MOTION"],
         "The hint is the text of the model that looked.",
     ),
+    "W_OBSERVER_UNSEEN": "Somebody has to look.",
     "E_EDIT_UNEQUAL": "Another machine, or hands, changed the files of a run.",
 }
 

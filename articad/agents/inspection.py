@@ -30,6 +30,7 @@ from articad.plan.resolve import ResolvedPart, ResolvedPlan
 from articad.runs.run import RunRequest
 
 VERDICT_SCHEMA: Final = "articad.verdict/1"
+UNSEEN: Final = "not seen"
 MOTIONS: Final = 6  # keyframe sheets for one observer; more pictures at once are not looked at closely
 Aspect = Literal["placement", "interference", "motion"]
 _ASPECTS: Final = ("placement", "interference", "motion")
@@ -117,12 +118,16 @@ def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, ste
 # ---------------------------------------------------------------------- the assembly
 
 
+Expected = bool | Literal["not seen"]
+"""Whether something is as the request has it; "not seen" where no picture shows it, which is neither."""
+
+
 class PartSeen(ReplyForm):
     """What was seen of a part."""
 
     part: str
     seen: str
-    expected: bool
+    expected: Expected
 
 
 class MotionSeen(ReplyForm):
@@ -130,7 +135,7 @@ class MotionSeen(ReplyForm):
 
     joint: str
     seen: str
-    expected: bool
+    expected: Expected
 
 
 class Observations(ReplyForm):
@@ -139,6 +144,23 @@ class Observations(ReplyForm):
     overall: str
     parts: tuple[PartSeen, ...]
     motions: tuple[MotionSeen, ...]
+
+    @property
+    def unseen(self) -> tuple[list[str], list[str]]:
+        """The parts and the joints of which the observer saw nothing."""
+        parts = [one.part for one in self.parts if one.expected == UNSEEN]
+        return parts, [one.joint for one in self.motions if one.expected == UNSEEN]
+
+    def with_second(self, second: Observations) -> Observations:
+        """Return these observations with what another look shows in place of what was not seen."""
+        parts, joints = self.unseen
+        kept = tuple(one for one in self.parts if one.part not in parts)
+        moving = tuple(one for one in self.motions if one.joint not in joints)
+        return Observations(
+            overall=self.overall,
+            parts=(*kept, *(one for one in second.parts if one.part in parts)),
+            motions=(*moving, *(one for one in second.motions if one.joint in joints)),
+        )
 
 
 class Ruling(ReplyForm):
@@ -234,7 +256,20 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
         llm, "judge", f"judge/{number}/1", (system(prompt("judge")), user(words)), _judgement_of(assembly), schema=schema_of(Judgement)
     )
     rulings = tuple((aspect, getattr(judgement, aspect)) for aspect in _ASPECTS)
-    return Verdict(Findings(_weighed(judgement.problems, evidence)), "judge", number, observations, rulings)
+    findings = Findings([*_weighed(judgement.problems, evidence), *_unseen(observations)])
+    return Verdict(findings, "judge", number, observations, rulings)
+
+
+def _unseen(observations: Observations) -> Iterable[Finding]:
+    """Yield a warning for each part and motion that no look showed: nobody has agreed to it."""
+    parts, joints = observations.unseen
+    hint = "Look at it yourself with `articad show`; what is measured of it stands in the checks."
+    for name in parts:
+        message = f"No picture showed {name} to the observer, not even with what hides it drawn as glass."
+        yield Finding(code="W_OBSERVER_UNSEEN", where=f"parts.{name}", parts=(name,), message=message, hint=hint)
+    for name in joints:
+        message = f"No picture showed the observer how {name} moves, not even with what hides it drawn as glass."
+        yield Finding(code="W_OBSERVER_UNSEEN", where=f"joints.{name}", message=message, hint=hint)
 
 
 def _assumed(assembly: Assembly) -> str:
@@ -249,22 +284,42 @@ def verdict_of(evidence: Evidence, number: int) -> Verdict:
 
 
 def _observed(assembly: Assembly, product: Sequence[str | Image], llm: LLM, number: int) -> Observations:
+    """Return what an observer sees; of what it does not see, it gets other pictures once."""
     joints = assembly.mechanism.driving_joints[:MOTIONS]
-    parts: list[str | Image] = [*product, "The assembly at rest, from four sides:", assembly_picture(assembly)]
+    shown: list[str | Image] = [*product, "The assembly at rest, from four sides:", assembly_picture(assembly)]
     for joint in joints:
-        parts += [f"Keyframes of joint {joint}:", motion_picture(assembly, joint)]
+        shown += [f"Keyframes of joint {joint}:", motion_picture(assembly, joint)]
+    first = _asked_to_observe(assembly, shown, llm, f"observe/{number}", joints=joints)
+    parts, unseen = first.unseen
+    if not parts and not unseen:
+        return first
+    shown = [*product, f"You saw nothing of {', '.join([*parts, *unseen])}. Other pictures follow. Write of these alone."]
+    if parts:
+        shown += [f"At rest, all but {', '.join(parts)} of glass:", assembly_picture(assembly, only=parts)]
+    for joint in unseen:
+        shown += [f"Keyframes of joint {joint}, from nearby, what stands still of glass:", motion_picture(assembly, joint, near=True)]
+    second = _asked_to_observe(assembly, shown, llm, f"observe/{number}/unseen", joints=unseen, parts=parts)
+    return first.with_second(second)
+
+
+def _asked_to_observe(
+    assembly: Assembly, shown: Sequence[str | Image], llm: LLM, step: str, *, joints: Sequence[str], parts: Sequence[str] = ()
+) -> Observations:
+    """Return an observer's answer that says something of these joints and parts."""
 
     def read(text: str, step: str) -> Observations:
         seen = reader(Observations)(text, step)
         missing = [joint for joint in joints if joint not in {motion.joint for motion in seen.motions}]
+        untold = [part for part in parts if part not in {one.part for one in seen.parts}]
         strangers = sorted({one.part for one in seen.parts} - set(assembly.parts))
         complaints = [f"motions: nothing is said of {', '.join(missing)}." if missing else ""]
+        complaints += [f"parts: nothing is said of {', '.join(untold)}." if untold else ""]
         complaints += [f"parts: there is no {', '.join(strangers)}; there are {', '.join(assembly.parts)}." if strangers else ""]
         if any(complaints):
             raise unusable(" ".join(filter(None, complaints)), text, step=step)
         return seen
 
-    return ask(llm, "observe", f"observe/{number}", (system(prompt("observe")), user(*parts)), read, schema=schema_of(Observations))
+    return ask(llm, "observe", step, (system(prompt("observe")), user(*shown)), read, schema=schema_of(Observations))
 
 
 def _judgement_of(assembly: Assembly) -> Any:

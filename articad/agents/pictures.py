@@ -34,6 +34,7 @@ KEYFRAMES: Final = 6  # for each coordinate of a joint
 _COLOR = "#c8a46e"
 _MESH = "part.npz"
 _RECIPE = "articad.picture/4"  # of `articad.render`, which is loaded only where something is drawn; a test compares the two
+_SHOT: Final = "seen/1"  # how the view of a motion is chosen
 _drawing = threading.Lock()  # one picture at a time: several would only compete for the processor
 
 
@@ -75,24 +76,29 @@ def part_picture(part: Part, build: str) -> Image:
     return _sheet(draw, 3, {"of": "part", "build": build, "views": list(PART_VIEWS), "size": SIZE})
 
 
-def assembly_picture(assembly: Assembly) -> Image:
-    """Draw an assembly at rest from four sides, with the names of its parts and the axes of its joints."""
+def assembly_picture(assembly: Assembly, *, only: Sequence[str] = ()) -> Image:
+    """Draw an assembly at rest from four sides, with the names of its parts and the axes of its joints; all parts but `only` of glass."""
 
     def draw() -> list[Picture]:
-        return list(assembly.render(VIEWS, size=ASSEMBLY_SIZE, labels="aside").values())  # names on the parts would hide what they name
+        shown = tuple(only) or None
+        return list(
+            assembly.render(VIEWS, size=ASSEMBLY_SIZE, labels="aside", only=shown, glass=bool(only)).values()
+        )  # names would hide parts
 
-    return _sheet(draw, 2, {"of": "assembly", "assembly": assembly_mark(assembly), "views": list(VIEWS), "size": ASSEMBLY_SIZE})
+    recipe = {"of": "assembly", "assembly": assembly_mark(assembly), "views": list(VIEWS), "size": ASSEMBLY_SIZE}
+    return _sheet(draw, 2, recipe | ({"through": list(only)} if only else {}))
 
 
-def motion_picture(assembly: Assembly, joint: str) -> Image:
-    """Draw the keyframes of a joint's motion, each with the joint's value."""
+def motion_picture(assembly: Assembly, joint: str, *, near: bool = False) -> Image:
+    """Draw the keyframes of a joint's motion, each with the joint's value; `near` as in `render_motion`."""
 
     def draw() -> list[Picture]:
         from articad.render import render_motion  # noqa: PLC0415 - as above
 
-        return render_motion(assembly, joint, frames=KEYFRAMES, size=SIZE)
+        return render_motion(assembly, joint, frames=KEYFRAMES, size=SIZE, near=near)
 
-    return _sheet(draw, 3, {"of": "motion", "assembly": assembly_mark(assembly), "joint": joint, "frames": KEYFRAMES, "size": SIZE})
+    recipe = {"of": "motion", "assembly": assembly_mark(assembly), "joint": joint, "frames": KEYFRAMES, "size": SIZE, "shot": _SHOT}
+    return _sheet(draw, 3, recipe | ({"near": True} if near else {}))
 
 
 def offence_picture(assembly: Assembly, finding: Finding) -> Image | None:

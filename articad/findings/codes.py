@@ -591,6 +591,12 @@ CODES: dict[str, Code] = {
     "I_LOOK_UNSEEN": Code(
         "model", None, "A model that saw pictures of a part lists what none of them shows.", "Nothing: it was not judged."
     ),
+    "W_OBSERVER_UNSEEN": Code(
+        "model",
+        None,
+        "An observer of an assembly did not see a part or a motion, not even with what hides it drawn as glass.",
+        "Look at it yourself: nobody has agreed to it.",
+    ),
     "E_VERDICT_PLACEMENT": Code(
         "model", None, "The judge finds parts missing, misplaced or of the wrong appearance.", "Compare with what the finding expects."
     ),

@@ -180,6 +180,8 @@ def _joint_axis(
     along = camera.project(camera.centre + direction * camera.mm_per_pixel) - camera.project(camera.centre[None])
     seen = float(np.linalg.norm(along))
     at = camera.project(np.array([axis.point]))[0]
+    if axis.hand and axis.turns:
+        _hand(draw, at, camera.project(np.array([axis.point]) + axis.hand * np.array(axis.across))[0])
     towards = float(direction @ camera.eye)
     if seen < 0.08:
         _end_on(draw, at, towards=towards > 0, turns=axis.turns)
@@ -194,6 +196,13 @@ def _joint_axis(
         _turn_arrow(draw, at + unit * length * 0.72, unit, towards)
     seen_tip = tip if (tip > 0).all() and (tip < (camera.width, camera.height)).all() else at
     return (float(tip[0] + unit[0] * 14), float(tip[1] + unit[1] * 12)), (float(seen_tip[0]), float(seen_tip[1]))
+
+
+def _hand(draw: ImageDraw.ImageDraw, at: FloatArray, tip: FloatArray) -> None:
+    """Draw a hand that turns with a round part."""
+    for fill, width in ((HALO, 6), (MARK, 3)):
+        draw.line([(at[0], at[1]), (tip[0], tip[1])], fill=fill, width=width)
+    draw.ellipse((tip[0] - 4, tip[1] - 4, tip[0] + 4, tip[1] + 4), fill=MARK, outline=HALO)
 
 
 def _dashed(draw: ImageDraw.ImageDraw, start: FloatArray, end: FloatArray) -> None:

@@ -21,10 +21,12 @@ from articad.interference.overlap_meshes import overlap_meshes
 from articad.kinematics.joints import Coordinate, Joint, JointType
 from articad.render import vtk
 from articad.render.annotate import Labels, annotate, room_beside
-from articad.render.camera import Camera
+from articad.render.camera import VIEWS, Camera
 from articad.render.raycast import cast
 from articad.render.scene import DrawnScene, Section, scene_of
 from articad.render.shade import PAPER, overlaid, reduced, shade
+from articad.render.shade import Picture as Pixels
+from articad.render.sight import cleared, of_glass, sights, with_hands
 from articad.render.studio import framed, studio
 
 if TYPE_CHECKING:
@@ -47,6 +49,9 @@ _CONTEXT = 1.5  # …with this share of their own size around them
 _BETWEEN = (226, 228, 231)
 _GAP = 6  # pixels between the pictures of a sheet
 _GIF_MILLISECONDS = 60
+_GLASS = 0.4  # opacity of parts of glass
+_JUDGED = 12  # frames of a motion, at most, that are judged by pixels
+_NAMED = 2  # parts of glass that a title names
 _FINE = 0.1  # pixels: deviation of the meshes of clean pictures
 
 
@@ -81,8 +86,18 @@ def picture(
         return annotate(image, scene, camera, buffers, labels=labels, axes=axes, title=title)
     fine = camera.scaled(supersample)
     buffers = cast(scene, fine)
-    image = Image.fromarray(reduced(shade(scene, fine, buffers), supersample))
+    image = Image.fromarray(reduced(_through_glass(scene, fine, shade(scene, fine, buffers)), supersample))
     return annotate(image, scene, camera, buffers, labels=labels, axes=axes, title=title)
+
+
+def _through_glass(scene: DrawnScene, camera: Camera, behind: Pixels) -> Pixels:
+    """Return a picture with the scene's glass before it, `(height, width, 3)`."""
+    if all(item.manner != "glass" for item in scene.items):
+        return behind
+    full = replace(scene, items=tuple(replace(item, manner="faded") if item.manner == "glass" else item for item in scene.items))
+    before = shade(full, camera, cast(full, camera)).astype(np.float64)
+    mixed: Pixels = np.rint(behind + _GLASS * (before - behind)).astype(np.uint8)
+    return mixed
 
 
 def printed(scene: DrawnScene, camera: Camera) -> bytes:
@@ -110,6 +125,7 @@ def render_views(
     labels: Labels = True,
     axes: bool = True,
     renderer: Renderer = "embree",
+    glass: bool = False,
 ) -> dict[str, Image.Image]:
     """Draw one pose of an assembly from several sides, at one scale.
 
@@ -127,8 +143,11 @@ def render_views(
         labels: Write the parts' names; "aside": in columns beside the picture.
         axes: Draw the joints' axes.
         renderer: As in `picture`.
+        glass: Draw the parts that are not in `only` as glass, which hides nothing.
     """
     scene = _prepared(assembly, q=q, only=only, section=section, explode=explode, highlights=highlights, show_overlaps=show_overlaps)
+    if glass:
+        scene = of_glass([scene], [item.name for item in scene.items if item.manner == "faded"])[0]
     beside = room_beside(scene) if labels == "aside" else 0
     return {
         view: picture(
@@ -303,18 +322,21 @@ def render_motion(
     supersample: int = 2,
     axes: bool = True,
     coarse: float = 0.0,
+    near: bool = False,
 ) -> list[Image.Image]:
     """Draw the frames of `motion_frames`, all with one camera that shows the whole motion.
 
     Args:
         assembly: What to draw.
         joint: The joint that moves.
-        view: A key of `articad.render.VIEWS`; by default the one that shows most of the motion.
+        view: A key of `articad.render.VIEWS`; by default one in which the moving parts are seen and change from frame to frame. If there
+            is none, what hides them is of glass, and the title says so; a round part that turns gets a hand.
         frames: Number of pictures for each coordinate of the joint.
         size: Width and height of each picture [pixels].
         supersample: Rays per pixel in each direction.
         axes: Draw the joint's axis.
         coarse: Draw simplified meshes with smooth normals, at most this many pixels away from the real ones; 0 draws the meshes themselves.
+        near: Draw the moving parts alone from nearby, with hands on turning axes and all that stands still of glass.
     """
     captions, q = motion_frames(assembly, joint, frames)
     scenes = _motion_scenes(assembly, joint, q)
@@ -323,10 +345,19 @@ def render_motion(
         rough = [scene.simplified(coarse * whole) for scene in scenes]
         near = _pixel(_shown(rough), size)
         scenes = rough if near >= whole else [scene.simplified(coarse * near) for scene in scenes]
-    shown = _shown(scenes)
-    camera = Camera.fit(view or best_view(scenes), shown, width=size, height=size)
+    shown = _envelope(_moving(scenes)) if near else _shown(scenes)
+    through: tuple[str, ...] = ()
+    if near:
+        view = view or best_view(_moving(scenes))
+        scenes = with_hands(of_glass(scenes, [item.name for item in scenes[0].items if item.manner == "faded"]), shown)
+    elif view is None:
+        view, through, hands = _shot(scenes, shown)
+        scenes = of_glass(scenes, through)
+        scenes = with_hands(scenes, shown) if hands else scenes
+    camera = Camera.fit(view, shown, width=size, height=size)
+    looking = f"\nthrough {', '.join(through[:_NAMED])}{', …' if len(through) > _NAMED else ''}" if through else ""
     return [
-        picture(scene, camera, supersample=supersample, labels=False, axes=axes, title=caption)
+        picture(scene, camera, supersample=supersample, labels=False, axes=axes, title=f"{caption}{looking}")
         for scene, caption in zip(scenes, captions, strict=True)
     ]
 
@@ -340,6 +371,29 @@ def best_view(scenes: Sequence[DrawnScene], candidates: Sequence[str] = MOTION_V
         scenes: The same items in different places.
         candidates: Keys of `articad.render.VIEWS`; the first one wins a tie.
     """
+    return _ranked(scenes, candidates)[0]
+
+
+def _shot(scenes: Sequence[DrawnScene], bounds: FloatArray) -> tuple[str, tuple[str, ...], bool]:
+    """Return how a motion is seen: the view, the parts of glass, and whether its axis needs a hand."""
+    few = scenes[:: math.ceil(len(scenes) / _JUDGED)]
+    views = [*_ranked(scenes, MOTION_VIEWS), *(view for view in VIEWS if view not in MOTION_VIEWS)]
+    looks = sights(few, views[:1], bounds)
+    if not looks[views[0]].shows:
+        looks |= sights(few, views[1:], bounds)
+    for view, look in looks.items():
+        if look.shows:
+            return view, (), False
+    inside = best_view(_moving(scenes))
+    through = cleared(few, inside, bounds)
+    if sights(of_glass(few, through), [inside], bounds)[inside].shows:
+        return inside, through, False
+    seen = [view for view, look in looks.items() if look.is_seen]
+    return (seen[0], (), True) if seen else (inside, through, True)
+
+
+def _ranked(scenes: Sequence[DrawnScene], candidates: Sequence[str]) -> list[str]:
+    """Return the views, the one first that shows most of a motion."""
     bounds = _envelope(scenes)
     farthest = max(scenes, key=lambda scene: _displacement(scenes[0], scene))
     first, last = scenes[0].items, farthest.items
@@ -354,7 +408,7 @@ def best_view(scenes: Sequence[DrawnScene], candidates: Sequence[str] = MOTION_V
         before, after = cast(scenes[0], camera).item, cast(farthest, camera).item
         return travel * int((before != after).sum()) * camera.mm_per_pixel**3
 
-    return max(candidates, key=shown)
+    return sorted(candidates, key=shown, reverse=True)
 
 
 def before_after(
@@ -481,13 +535,18 @@ def _motion_scenes(assembly: Assembly, joint: str, q: FloatArray) -> list[DrawnS
 def _shown(scenes: Sequence[DrawnScene]) -> FloatArray:
     """Return the box that pictures of a motion show: the whole, or only the surroundings of small moving parts."""
     whole = _envelope(scenes)
-    moving = [replace(scene, items=tuple(item for item in scene.items if item.manner == "solid")) for scene in scenes]
+    moving = _moving(scenes)
     part = _envelope(moving)
     size = float(np.linalg.norm(part[1] - part[0]))
     if not moving[0].items or size > _NEAR * float(np.linalg.norm(whole[1] - whole[0])):
         return whole
     near: FloatArray = part + _CONTEXT * size * np.array([[-0.5], [0.5]])
     return near
+
+
+def _moving(scenes: Sequence[DrawnScene]) -> list[DrawnScene]:
+    """Return the scenes with nothing but what moves."""
+    return [replace(scene, items=tuple(item for item in scene.items if item.manner == "solid")) for scene in scenes]
 
 
 def _turns_far(assembly: Assembly, joint: str, index: int) -> bool:

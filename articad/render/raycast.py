@@ -60,7 +60,7 @@ def cast(scene: DrawnScene, camera: Camera) -> Buffers:
     Vertices are made relative to the camera's centre before the conversion to float32, so that a scene far from the origin is as sharp
     as one at it.
     """
-    plain = [index for index, item in enumerate(scene.items) if item.manner != "highlight"]
+    plain = [index for index, item in enumerate(scene.items) if item.manner not in {"glass", "highlight"}]
     marked = [index for index, item in enumerate(scene.items) if item.manner == "highlight"]
     size = float(np.linalg.norm(scene.bounds[1] - scene.bounds[0])) + camera.mm_per_pixel * max(camera.width, camera.height)
     rows, columns = _occupied(scene, camera)

@@ -16,7 +16,7 @@ from articad.geometry.part import Part
 from articad.kinematics.joints import Joint
 from articad.render.simplify import simplified
 
-Manner = Literal["solid", "faded", "highlight"]
+Manner = Literal["solid", "faded", "glass", "highlight"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class DrawnMesh:
         mesh: Its surface in its own frame [mm].
         T_ground: Pose of that frame.
         color: "#rrggbb".
-        manner: solid; faded for context; highlight is drawn over everything in front of it.
+        manner: solid; faded for context; glass is faded and hides nothing; highlight is drawn over everything in front of it.
         smooth: Whether normals are interpolated over smooth surfaces; otherwise each triangle is drawn flat.
         material: The declared material, for its look.
     """
@@ -81,12 +81,23 @@ class Section:
 
 @dataclass(frozen=True)
 class AxisMark:
-    """A joint's axis to draw: a point, a direction and a name."""
+    """A joint's axis to draw.
+
+    Attributes:
+        name: Name of the joint.
+        point: A point of the axis [mm].
+        direction: Unit vector along it.
+        turns: Whether the joint turns.
+        across: Unit vector perpendicular to the axis that turns with the joint.
+        hand: Length of the hand that is drawn along `across` [mm]; 0 for none.
+    """
 
     name: str
     point: tuple[float, float, float]
     direction: tuple[float, float, float]
     turns: bool
+    across: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    hand: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -153,4 +164,5 @@ def _axis(joint: Joint, poses: Mapping[str, SE3]) -> AxisMark:
         tuple(map(float, frame.translation)),  # type: ignore[arg-type]
         tuple(map(float, frame.z_axis)),  # type: ignore[arg-type]
         turns="rad" in joint.type.units or "1" in joint.type.units,
+        across=tuple(map(float, (poses[joint.child] @ joint.T_child_connector).x_axis)),  # type: ignore[arg-type]
     )

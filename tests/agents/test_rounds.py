@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import copy
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -618,3 +619,54 @@ def test_a_model_that_raises_when_it_is_called_does_not_disturb_assembly_and_che
             state["open"] = True
 
     assert (made(tmp_path, Guarded(), progress=tell).checks() or {})["ok"]
+
+
+def not_seen(*joints: str, parts: Sequence[str] = ()) -> str:
+    """What an observer says whose pictures show nothing of these."""
+    motions = [{"joint": joint, "seen": "six pictures alike", "expected": "not seen"} for joint in joints]
+    return json.dumps(
+        {"overall": "a box", "parts": [{"part": part, "seen": "hidden", "expected": "not seen"} for part in parts], "motions": motions}
+    )
+
+
+def test_of_what_an_observer_does_not_see_it_gets_other_pictures(tmp_path: Path) -> None:
+    seen = json.loads(observed("hinge")) | {"parts": [{"part": "flap", "seen": "a plate", "expected": True}]}
+    llm = flap(observe__1=not_seen("hinge", parts=["flap"]), observe__1__unseen=json.dumps(seen))
+    run = made(tmp_path, llm)
+
+    recipe_of_part, recipe_of_motion = recipes(llm, "observe/1/unseen")
+    assert (recipe_of_part["of"], recipe_of_part["through"]) == ("assembly", ["flap"])
+    assert (recipe_of_motion["of"], recipe_of_motion["joint"], recipe_of_motion["near"]) == ("motion", "hinge", True)
+    assert "You saw nothing of flap, hinge." in said(llm, "observe/1/unseen")
+    told = said(llm, "judge/1/1")
+    assert "turns upwards" in told
+    assert "six pictures alike" not in told
+    verdict = run.verdict()
+    assert verdict is not None
+    assert verdict["findings"] == []
+    request = next(request for request in llm.requests if request.step == "observe/1/unseen")
+    pictures = [part for message in request.messages for part in message.parts if isinstance(part, Image)]
+    assert len({picture.content for picture in pictures}) == len(pictures)
+
+
+def test_what_is_not_seen_at_second_sight_never_counts_as_agreed(tmp_path: Path) -> None:
+    llm = flap(observe__1=not_seen("hinge"), observe__1__unseen=not_seen("hinge"))
+    run = made(tmp_path, llm)
+
+    told = said(llm, "judge/1/1")
+    assert '"expected": "not seen"' in told
+    assert '"expected": true' not in told
+    verdict = run.verdict()
+    assert verdict is not None
+    assert [(finding["code"], finding["where"]) for finding in verdict["findings"]] == [("W_OBSERVER_UNSEEN", "joints.hinge")]
+    assert [motion["expected"] for motion in verdict["observations"]["motions"]] == ["not seen"]
+    assert sum(step.startswith("observe/") for step in llm.steps) == 2, "other pictures are taken once"
+
+
+def test_an_observer_who_says_nothing_of_other_pictures_is_asked_again(tmp_path: Path) -> None:
+    silent = json.dumps({"overall": "a box", "parts": [], "motions": []})
+    answers = {"observe__1": not_seen("hinge"), "observe__1__unseen": silent, "observe__1__unseen__2": observed("hinge")}
+    llm = flap(**answers)
+    made(tmp_path, llm)
+
+    assert "nothing is said of hinge" in said(llm, "observe/1/unseen/2")
