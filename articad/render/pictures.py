@@ -343,8 +343,8 @@ def render_motion(
     if coarse:
         whole = _pixel(scenes[0].bounds, size)
         rough = [scene.simplified(coarse * whole) for scene in scenes]
-        near = _pixel(_shown(rough), size)
-        scenes = rough if near >= whole else [scene.simplified(coarse * near) for scene in scenes]
+        pixel = _pixel(_shown(rough), size)
+        scenes = rough if pixel >= whole else [scene.simplified(coarse * pixel) for scene in scenes]
     shown = _envelope(_moving(scenes)) if near else _shown(scenes)
     through: tuple[str, ...] = ()
     if near:
