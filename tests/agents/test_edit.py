@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import shutil
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
@@ -296,6 +298,39 @@ def test_a_part_that_only_moves_is_not_touched(plate: Run, tmp_path: Path) -> No
     assert {row["fate"] for row in report["parts"].values()} == {"untouched"}
     assert report["pairs"]["checked"] == 0
     assert (run.assembly() or {})["parts"]["flap"]["rest"][2] == 15
+
+
+def hashes(run: Run, part: str) -> dict[str, str]:
+    """Return the sha256 of each file of a part, read from the disk."""
+    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in (run.path / "parts" / part).iterdir() if file.is_file()}
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_after_random_edits_the_parts_that_are_called_as_they_were_are_those_with_equal_files(
+    plate: Run, tmp_path: Path, seed: int
+) -> None:
+    random = Random(seed)
+    entries: dict[str, tuple[str, Any]] = {
+        "parts.flap.dimensions.thickness": ("flap", random.choice([1.5, 2.5, 3])),
+        "parts.flap.dimensions.length": ("flap", random.choice([20, 26, 28])),
+        "parts.plate.dimensions.length": ("plate", random.choice([42, 44])),
+        "parts.plate.rest_pose": ("", {"at": [0, 0, 0]}),
+        "joints.hinge.angle_deg": ("plate flap", [0, random.choice([45, 60])]),
+        "materials.steel.color": ("", "#204060"),
+        "parts.flap.role": ("flap", "a lid"),
+    }
+    chosen = random.sample(sorted(entries), 3)
+    touched = sorted({part for where in chosen for part in entries[where][0].split()})
+    answer = {"summary": "x", "touches": touched, "changes": {where: entries[where][1] for where in chosen}}
+    scripts = {f"part/{name}/*": fenced(FLAP_SCRIPTS[name]) for name in FLAP_SCRIPTS}
+
+    run, _ = edited(plate, tmp_path / "run", answer, answer, answer, also=scripts)
+
+    report = run.edit() or {}
+    alike = {name for name in ("plate", "flap") if hashes(run, name) == hashes(plate, name)}
+    assert {name for name, row in report["parts"].items() if row["fate"] in {"untouched", "equal"}} == alike
+    assert {name for name, row in report["parts"].items() if not row["different"]} == alike
+    assert {f["where"].removeprefix("parts.") for f in report["findings"] if f["code"] == "I_PART_EDITED"}.isdisjoint(alike)
 
 
 def test_a_collision_goes_back_to_who_changes_the_plan(plate: Run, tmp_path: Path) -> None:
