@@ -29,6 +29,7 @@ from articad.kinematics.mechanism import Mechanism
 GRAVITY_M_S2 = -GRAVITY[2]
 MARGIN = 2.0  # for friction and acceleration, in addition to holding the load
 DAMPING_SHARE = 0.05  # of the effort, lost at full velocity
+DIGITS = 9  # of computed values: their last bits depend on the processor, and files must not
 
 
 ALL = frozenset({"effort", "velocity", "damping"})
@@ -75,9 +76,9 @@ def joint_loads(mechanism: Mechanism, parts: Mapping[str, Part]) -> dict[str, tu
 def _loads(joint: Joint, carried: Carried) -> tuple[Load, ...]:
     g = GRAVITY_M_S2
     lead = abs(joint.lead) / MM_PER_M / math.tau  # [m/rad]
-    force = MARGIN * g * carried.mass
-    torque = MARGIN * max(g * carried.moment, g / carried.reach * carried.inertia) + force * lead
-    omega = math.sqrt(2 * g / carried.reach)
+    force = _rounded(MARGIN * g * carried.mass)
+    torque = _rounded(MARGIN * max(g * carried.moment, g / carried.reach * carried.inertia) + force * lead)
+    omega = _rounded(math.sqrt(2 * g / carried.reach))
     turn = _load(torque, omega, carried.inertia)
     if joint.type is JointType.SCREW:
         return _load(force, omega * lead, carried.mass), _stated(joint, 0, turn, MM_PER_M, 1.0)
@@ -89,13 +90,17 @@ def _loads(joint: Joint, carried: Carried) -> tuple[Load, ...]:
             loads.append(_stated(joint, index, turn, MM_PER_M, 1.0))
         else:
             length = (upper - lower) / MM_PER_M if math.isfinite(upper - lower) else 2 * carried.reach
-            slide = _load(force, math.sqrt(2 * g * max(length, LEAST_REACH_M)), carried.mass)
+            slide = _load(force, _rounded(math.sqrt(2 * g * max(length, LEAST_REACH_M))), carried.mass)
             loads.append(_stated(joint, index, slide, 1.0, MM_PER_M))
     return tuple(loads)
 
 
 def _load(effort: float, velocity: float, carried: float) -> Load:
-    return Load(effort, velocity, DAMPING_SHARE * effort / velocity if velocity > 0 else 0.0, carried)
+    return Load(effort, velocity, _rounded(DAMPING_SHARE * effort / velocity) if velocity > 0 else 0.0, _rounded(carried))
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{DIGITS}g}")
 
 
 def _stated(joint: Joint, index: int, computed: Load, effort_unit: float, velocity_unit: float) -> Load:
