@@ -119,7 +119,7 @@ HARMLESS = """
 --root --budget --no-engines --density --sandbox --out --jobs --memory --kernel --set --force --api-base --docs --no-look --strict
 --no-inspection --max-calls --max-tokens --max-cost --max-minutes --rounds --repairs --variant --model --vision-model --judge-model
 --embeddings --keep --tasks --some --kind --at-once --judge --refine --recorded --size --sheet --kerf --turn --purchased --epsilon
---joints --pairs --no-pairs --script --fuse --no-build --srdf --keep-frames --image --part-image --review --ideas --pick --loops --collision
+--joints --pairs --no-pairs --script --fuse --no-build --srdf --keep-frames --flat --image --part-image --review --ideas --pick --loops --collision
 --actuators --process --case --repair --next --port --dir --formats --export --views --parts --explode --engine --scheduler --seconds --meshes
 """
 """Options that choose numbers, names, places or one of the ways that are tried without them; they start no code of their own."""

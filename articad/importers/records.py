@@ -160,6 +160,8 @@ def _part(record: Record, folder: Folder) -> Part:
         return None if file is None else folder.mesh(file, _UNIT, where)
 
     def shapes(rows: list[Record]) -> tuple[Shape, ...]:
+        if not all(isinstance(row, dict) for row in rows):
+            raise TypeError("a shape is not an object")
         formed = ((row, _primitive(row.get("primitive"))) for row in rows)
         found = ((row, form, mesh(row["file"]) if form is None else primitive_mesh(form)) for row, form in formed)
         return tuple(Shape(body, _frame(row["frame"]), row["color"], row["name"], form) for row, form, body in found if body is not None)
