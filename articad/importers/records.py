@@ -35,6 +35,7 @@ PRIMITIVES = ("box", "cylinder", "sphere", "capsule", "ellipsoid")
 Record = dict[str, Any]
 Scale = tuple[float, float, float]
 
+_FACETS = 0.05  # of a primitive's size: how far the facets of its stored mesh may lie from it
 _UNIT: Scale = (1.0, 1.0, 1.0)  # articad writes meshes in mm
 
 
@@ -163,7 +164,7 @@ def _part(record: Record, folder: Folder) -> Part:
         if not all(isinstance(row, dict) for row in rows):
             raise TypeError("a shape is not an object")
         formed = ((row, _primitive(row.get("primitive"))) for row in rows)
-        found = ((row, form, mesh(row["file"]) if form is None else primitive_mesh(form)) for row, form in formed)
+        found = ((row, form, mesh(row["file"]) if form is None else _mesh_of(form, mesh(row["file"]))) for row, form in formed)
         return tuple(Shape(body, _frame(row["frame"]), row["color"], row["name"], form) for row, form, body in found if body is not None)
 
     return Part(
@@ -176,6 +177,20 @@ def _part(record: Record, folder: Folder) -> Part:
         record["color"],
         record["material"],
     )
+
+
+def _mesh_of(form: Primitive, stored: TriMesh | None) -> TriMesh:
+    """Return the stored mesh of a primitive, of whatever facets, or one that is made if there is none.
+
+    Raises:
+        ValueError: If the stored mesh has another size.
+    """
+    made = primitive_mesh(form)
+    if stored is None:
+        return made
+    if np.abs(stored.bounds - made.bounds).max() > _FACETS * np.ptp(made.bounds, axis=0).max():
+        raise ValueError("the mesh of a primitive has another size")
+    return stored
 
 
 def _primitive(record: list[Any] | None) -> Primitive | None:
