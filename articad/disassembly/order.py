@@ -279,7 +279,7 @@ class _Taking:
         for way in distinct([axis for name in moving for axis in ways_of(self.scene, ways.poses, name)]):
             away = ways.clear_length(moving, partners, way)
             rises = float(way[2]) >= -_FLAT or float(found.way[2]) < -_FLAT  # nothing comes from below that can come from elsewhere
-            if away < best[0] and rises and np.isinf(ways.stop(moving, staying, way).travel):
+            if away < best[0] and rises and ways.free(moving, staying, way):
                 best = (away, way)
         return replace(found, way=best[1])
 
@@ -290,7 +290,7 @@ class _Taking:
         moving, ways = found.parts, found.ways
         best = (self._met([moving], [moving, tuple(staying)], found.way, ways), found.way)
         for way in distinct([*np.eye(3), *(axis for name in moving for axis in ways_of(self.scene, ways.poses, name))]):
-            if best[0] > 0.0 and np.isinf(ways.stop(moving, staying, way).travel):
+            if best[0] > 0.0 and ways.free(moving, staying, way):
                 met = self._met([moving], [moving, tuple(staying)], way, ways)
                 if met < _GENTLER * best[0]:
                     best = (met, way)
@@ -320,7 +320,7 @@ class _Taking:
                 for share in _STEPS:
                     moved = share * travel * first
                     for way in directions:
-                        if abs(float(way @ first)) < 1 - _PARALLEL and np.isinf(self.ways.stop(atom, rest, way, offset=moved).travel):
+                        if abs(float(way @ first)) < 1 - _PARALLEL and self.ways.free(atom, rest, way, offset=moved):
                             moved = self._shortened(atom, rest, moved, way)
                             return _Removal((atom,), way, self.ways, {}, moved, self._key((atom,), left, way, 0))
         return None
@@ -329,7 +329,7 @@ class _Taking:
         """Return a first move, halved as often as the second one stays free after it."""
         for _ in range(_HALVINGS):
             half = moved / 2
-            if float(np.linalg.norm(half)) < _LEAST_MM or np.isfinite(self.ways.stop(atom, rest, way, offset=half).travel):
+            if float(np.linalg.norm(half)) < _LEAST_MM or not self.ways.free(atom, rest, way, offset=half):
                 break
             moved = half
         return moved

@@ -8,6 +8,7 @@ The travel of a pair depends on no third part, so each is computed once, whateve
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
@@ -90,6 +91,7 @@ class Ways:
         self._directions: list[FloatArray] = []
         self._known: dict[tuple[str, str, int, tuple[float, ...]], tuple[float, float]] = {}
         self._met: dict[tuple[str, str, int, int], float] = {}
+        self._stops: Counter[tuple[str, str]] = Counter()
 
     def travel(self, part: str, other: str, direction: FloatArray, offset: FloatArray | None = None) -> float:
         """Return how far a part moves along a unit vector `(3,)` before it meets another part [mm]; infinity if it never does.
@@ -138,6 +140,25 @@ class Ways:
                 if travel < first.travel:
                     first = Halt(travel, part, other)
         return first
+
+    def free(self, moving: Iterable[str], staying: Iterable[str], direction: FloatArray, *, offset: FloatArray | None = None) -> bool:
+        """Return whether nothing stops parts that move together, as `stop` says; ends at the first pair that meets.
+
+        Pairs that were in the way most often are examined first: they mostly are in the way of the next direction, too.
+
+        Args:
+            moving: Names of the parts.
+            staying: Names of the parts that do not move.
+            direction: Unit vector `(3,)`.
+            offset: By which they have moved before `(3,)` [mm].
+        """
+        staying = tuple(staying)
+        pairs = [(part, other) for part in moving for other in staying if frozenset((part, other)) not in self.permitted]
+        for pair in sorted(pairs, key=lambda pair: -self._stops[pair]):
+            if math.isfinite(self.travel(*pair, direction, offset)):
+                self._stops[pair] += 1
+                return False
+        return True
 
     def met(self, part: str, other: str, direction: FloatArray) -> float:
         """Return how much material of a part another part is in the way of, when the part leaves along a unit vector `(3,)` [mm³]."""

@@ -119,3 +119,27 @@ def test_directions_follow_the_part_where_it_stands() -> None:
     axis = (T @ SE3.rot_x(0.4)).z_axis
     assert sorted(round(math.copysign(1, float(np.dot(way, axis)))) for way in free) == [-1, 1]
     assert all(abs(abs(float(np.dot(way, axis))) - 1) < 1e-9 for way in free)
+
+
+def test_free_says_what_stop_says_and_measures_no_pair_after_one_that_meets() -> None:
+    bars = {name: box(20, 20, 20).transformed(at(x=30.0 * k)) for k, name in enumerate("abcdef")}
+    scene, known = scene_of(bars), np.random.default_rng(7).normal(size=(40, 3))
+    asked, answered = Ways(scene, rest(bars)), Ways(scene, rest(bars))
+    for way in [*np.eye(3), *-np.eye(3), *(known / np.linalg.norm(known, axis=1)[:, None])]:
+        for offset in (None, np.array([0.0, 3.0, 1.0])):
+            halt = answered.stop(["a", "b"], "cdef", way, offset=offset)
+            assert asked.free(["a", "b"], "cdef", way, offset=offset) == math.isinf(halt.travel)
+    measured = len(asked._known)
+    assert measured < len(answered._known)  # blocked directions end early
+    last = Ways(scene, rest(bars))
+    assert not last.free(["a"], "bcdef", np.array([1.0, 0, 0]))
+    assert len(last._known) == 1
+    assert not last.free(["a"], "fedcb", np.array([1.0, 0, 0]), offset=np.array([0.0, 1.0, 0]))
+    assert len(last._known) == 2  # the pair that met before is asked first, whatever the order
+
+
+def test_free_lets_pass_what_is_permitted() -> None:
+    bars = {"a": box(20, 20, 20), "b": box(20, 20, 20).transformed(at(x=30.0))}
+    east = np.array([1.0, 0, 0])
+    assert not Ways(scene_of(bars), rest(bars)).free(["a"], ["b"], east)
+    assert Ways(scene_of(bars), rest(bars), [frozenset("ab")]).free(["a"], ["b"], east)
