@@ -238,7 +238,41 @@ def test_an_unknown_part_is_refused_with_the_nearest_name() -> None:
         next(drawings_of(bearing(), "plat"))
 
 
+CIRCLES = [("top", "c1", 5.0), ("front", "c2", 2.5)]
+EDGES = [("front", "DistanceX", "e1", 5.0), ("front", "DistanceX", "e2", 5.0), ("top", "DistanceY", "e3", 7.0)]
+
+
+def named(**names: float) -> list[tuple[str, Any, str]]:
+    return [(kind, elements[0], name) for _, kind, elements, _, name in named_sizes(names, [], CIRCLES, EDGES, 9)]
+
+
 def test_a_length_is_not_that_of_a_circle_and_no_edge_is_dimensioned_twice() -> None:
-    circles, edges = [("top", "c1", 5.0)], [("front", "DistanceX", "e1", 5.0), ("front", "DistanceX", "e2", 5.0)]
-    found = named_sizes({"left": -5.0, "pin_radius": 5.0, "length": 5.0, "width": 5.0, "height": 5.0}, [], circles, edges, 9)
-    assert [(name, elements) for *_, elements, _, name in found] == [("pin_radius", ["c1"]), ("length", ["e1"]), ("width", ["e2"])]
+    found = named(left=-5.0, pin_radius=5.0, length=5.0, width=5.0)
+    assert found == [("Radius", "c1", "pin_radius"), ("DistanceX", "e1", "length"), ("DistanceX", "e2", "width")]
+
+
+@pytest.mark.parametrize("name", ["spigot_radius", "pin_r"])
+def test_a_radius_is_never_the_diameter_of_a_smaller_circle(name: str) -> None:
+    assert named(**{"small_radius": 2.5, name: 5.0}) == [("Radius", "c2", "small_radius"), ("Radius", "c1", name)]
+    assert list(named_sizes({name: 5.0}, [], CIRCLES[1:], EDGES, 9)) == []
+
+
+def test_a_diameter_is_never_the_radius_of_a_larger_circle() -> None:
+    assert named(bore_diameter=5.0) == [("Diameter", "c2", "bore_diameter")]
+    assert list(named_sizes({"bore_diameter": 5.0}, [], CIRCLES[:1], EDGES, 9)) == []
+
+
+@pytest.mark.parametrize("name", ["o_high", "neck_height", "low", "stud_reach", "wall"])
+def test_a_height_is_never_that_of_a_circle(name: str) -> None:
+    assert list(named_sizes({name: 5.0}, [], CIRCLES, [], 9)) == []
+
+
+def test_a_name_that_may_be_of_a_circle_or_of_an_edge_is_not_guessed() -> None:
+    assert named(tongue=5.0) == []
+    assert list(named_sizes({"eye": 5.0}, [], CIRCLES, EDGES[2:], 9)) == [("top", "Radius", ["c1"], 5.0, "eye")]
+    assert list(named_sizes({"tongue": 7.0}, [], CIRCLES, EDGES, 9)) == [("top", "DistanceY", ["e3"], 7.0, "tongue")]
+
+
+def test_an_edge_that_two_names_claim_is_told_without_a_name() -> None:
+    assert named(slot_width=7.0, spigot_length=7.0) == [("DistanceY", "e3", "")]
+    assert [name for *_, name in named(length=5.0, width=5.0, height=5.0)] == ["", ""]

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 SAME = 1e-6  # mm
 _TRIED = 8  # circles of one radius, to find one that its view shows
-OF_CIRCLE = re.compile(r"radius|diameter")  # names of dimensions that no straight edge has
-OF_EDGE = re.compile(r"length|depth|height|width|thick|play|clearance|gap|span|pitch|_[xyz]$")  # and those that no circle has
+OF_RADIUS = re.compile(r"radius|_r$|^r$")  # names of dimensions that a circle has as its radius, and no straight edge has
+OF_DIAMETER = re.compile(r"diameter|_dia$")  # and those that it has as its diameter
+OF_EDGE = re.compile(  # and those that no circle has
+    r"length|depth|height|high|width|wide|thick|tall|wall|floor|reach|play|clearance|gap|span|pitch|(^|_)(low|[xyz])$"
+)
 
 
 def named_sizes(
@@ -23,7 +27,9 @@ def named_sizes(
     """Yield the dimensions of a page: the view, the kind, the elements that it measures, the value and the name in the plan.
 
     The overall sizes first; then the dimensions of the plan that a circle or an edge has. Equal numbers are not enough: a length is not
-    that of a circle, a radius not that of an edge, and a circle or edge has one dimension.
+    that of a circle, a radius not that of an edge nor a diameter, and a circle or edge has one dimension. A name that may be either's is
+    told only if no circle and edge both have its number. Where several names share a number and fewer elements have it, these are told
+    without a name, because nobody knows whose they are.
 
     Args:
         names: Dimensions of the plan [mm].
@@ -36,27 +42,42 @@ def named_sizes(
     left, told, taken = dict(names), 0, set()
     for view, kind, ends, size in overall:
         if ends is not None:
-            name = next((key for key, value in left.items() if abs(value - size) < SAME and not OF_CIRCLE.search(key)), "")
+            name = next((key for key, value in left.items() if abs(value - size) < SAME and not of_circle(key)), "")
             left.pop(name, None)
             told += 1
             yield view, kind, list(ends), size, name
-    for name, value in left.items():
-        round_ones = (row for row in circles if abs(row[2] - value) < SAME or abs(2 * row[2] - value) < SAME)
+    wanted = {name: _having(name, value, circles, edges) for name, value in left.items() if value > 0.0}
+    claims = Counter(element for having in wanted.values() for element in {row[2] for row in having})
+    for name, having in wanted.items():
+        free = [row for row in having if row[2] not in taken]
+        if not free:
+            continue
         if told >= most:
             return
-        if value <= 0.0:
-            continue
-        free = [] if OF_EDGE.search(name) else [row for row in round_ones if row[1] not in taken]
-        found = next((row for row in free[:_TRIED] if shown is None or shown(row[0], row[1])), free[0] if free else None)
-        if found is not None:
-            view, element, radius = found
-            told += 1
-            taken.add(element)
-            yield view, "Radius" if abs(radius - value) < SAME else "Diameter", [element], value, name
-            continue
-        straight = (row for row in edges if abs(row[3] - value) < SAME and row[2] not in taken)
-        edge = None if OF_CIRCLE.search(name) else next(straight, None)
-        if edge is not None:
-            told += 1
-            taken.add(edge[2])
-            yield edge[0], edge[1], [edge[2]], value, name
+        view, kind, element = next((row for row in free[:_TRIED] if shown is None or _seen(row, shown)), free[0])
+        told += 1
+        taken.add(element)
+        yield view, kind, [element], left[name], name if claims[element] <= len({row[2] for row in having}) else ""
+
+
+def of_circle(name: str) -> bool:
+    """Return whether a name says that a dimension is one of a circle."""
+    return bool(OF_RADIUS.search(name) or OF_DIAMETER.search(name))
+
+
+def _seen(row: tuple[str, str, Any], shown: Callable[[str, Any], bool]) -> bool:
+    return row[1].startswith("Distance") or shown(row[0], row[2])
+
+
+def _having(
+    name: str, value: float, circles: Sequence[tuple[str, Any, float]], edges: Sequence[tuple[str, str, Any, float]]
+) -> list[tuple[str, str, Any]]:
+    """Return view, kind and element of all that may have a dimension: circles or edges; none where both may."""
+    radius, diameter, edge = OF_RADIUS.search(name), OF_DIAMETER.search(name), OF_EDGE.search(name)
+    round_ones = [(row[0], "Radius", row[1]) for row in circles if abs(row[2] - value) < SAME and not diameter]
+    if not round_ones and not radius:
+        round_ones = [(row[0], "Diameter", row[1]) for row in circles if abs(2 * row[2] - value) < SAME]
+    straight = [(row[0], row[1], row[2]) for row in edges if abs(row[3] - value) < SAME]
+    if radius or diameter:
+        return round_ones
+    return straight if edge or not round_ones else [] if straight else round_ones
