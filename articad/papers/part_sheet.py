@@ -49,6 +49,7 @@ _HOLE_WIDTHS: Final = (17.0, 11.0, 15.0, 15.0, 14.0, 16.0, 48.0)
 _HOLE_HEAD: Final = ("hole", "view", "x", "y", "Ø", "depth", "fit")
 _NAME_WIDTHS: Final = (38.0, 16.0)
 _GAP: Final = 14.0  # between views
+_TINY: Final = 0.1  # scale at which bores are dots: a larger paper is taken for the next scale already
 
 
 @dataclass(frozen=True)
@@ -137,7 +138,8 @@ def part_sheet(facts: PartFacts, size: tuple[float, float] | None = None) -> Dra
     layouts = [layout for paper in ((A4, A3) if size is None else (size,)) if (layout := _layout(facts, paper)) is not None]
     if not layouts:
         layouts = [_layout(facts, size or A3, tables=False) or _Layout(size or A3, SCALES[-1], {}, ())]
-    best = layouts[-1] if len(layouts) == 2 and layouts[1].scale >= 4 * layouts[0].scale else layouts[0]
+    larger = 2 if layouts[0].scale <= _TINY else 4
+    best = layouts[-1] if len(layouts) == 2 and layouts[1].scale >= larger * layouts[0].scale else layouts[0]
     return _drawn(facts, best)
 
 
@@ -447,8 +449,10 @@ def _draw_view(sheet: DrawingSheet, drawn: DrawnView, placed: _Placed) -> None:
     for loops in drawn.cut:
         for start, end in hatched([np.array(placed.origin) + placed.scale * loop for loop in loops]):
             sheet.line("hatch", *start, *end)
-    left, _, right, top = placed.edges
+    left, _, right, _ = placed.edges
     if placed.view.name == "section":
+        shown = (*drawn.visible, *drawn.hidden)
+        top = max((float(sampled(on_paper(each, placed.origin, placed.scale))[:, 1].max()) for each in shown), default=placed.edges[3])
         sheet.texts.append(Lettering(0.5 * (left + right), top + 3.0, "A–A", 3.5, "middle", bold=True))
     elif placed.view.name == "iso" and placed.scale != sheet.scale:
         sheet.texts.append(Lettering(0.5 * (left + right), placed.edges[1] - 4.0, f"({ratio(placed.scale)})", 2.0, "middle"))

@@ -11,8 +11,10 @@ SAME = 1e-6  # mm
 _TRIED = 8  # circles of one radius, to find one that its view shows
 OF_RADIUS = re.compile(r"radius|_r$|^r$")  # names of dimensions that a circle has as its radius, and no straight edge has
 OF_DIAMETER = re.compile(r"diameter|_dia$")  # and those that it has as its diameter
+OF_HOLE = re.compile(r"bore|hole|drill")  # either
+PLACE = re.compile(r"(^|_)([abuvwxyz]|left|right|top|bottom|from|to|inset)$")  # coordinates and distances from an origin
 OF_EDGE = re.compile(  # and those that no circle has
-    r"length|depth|height|high|width|wide|thick|tall|wall|floor|reach|play|clearance|gap|span|pitch|(^|_)(low|[xyz])$"
+    r"length|depth|height|high|width|wide|thick|tall|wall|floor|reach|play|clearance|gap|span|pitch|(^|_)low$"
 )
 
 
@@ -28,8 +30,8 @@ def named_sizes(
 
     The overall sizes first; then the dimensions of the plan that a circle or an edge has. Equal numbers are not enough: a length is not
     that of a circle, a radius not that of an edge nor a diameter, and a circle or edge has one dimension. A name that may be either's is
-    told only if no circle and edge both have its number. Where several names share a number and fewer elements have it, these are told
-    without a name, because nobody knows whose they are.
+    told only if no circle and edge both have its number; coordinates are not told. Where several names claim an element, it is told once,
+    without a name, because nobody knows whose it is: the names belong into a table.
 
     Args:
         names: Dimensions of the plan [mm].
@@ -42,14 +44,16 @@ def named_sizes(
     left, told, taken = dict(names), 0, set()
     for view, kind, ends, size in overall:
         if ends is not None:
-            name = next((key for key, value in left.items() if abs(value - size) < SAME and not of_circle(key)), "")
+            name = next((key for key, value in left.items() if abs(value - size) < SAME and not _elsewhere(key)), "")
             left.pop(name, None)
             told += 1
             yield view, kind, list(ends), size, name
     wanted = {name: _having(name, value, circles, edges) for name, value in left.items() if value > 0.0}
     claims = Counter(element for having in wanted.values() for element in {row[2] for row in having})
+    shared: set[tuple[str, str, float]] = set()
     for name, having in wanted.items():
-        free = [row for row in having if row[2] not in taken]
+        value = left[name]
+        free = [row for row in having if row[2] not in taken and (*row[:2], value) not in shared]
         if not free:
             continue
         if told >= most:
@@ -57,12 +61,14 @@ def named_sizes(
         view, kind, element = next((row for row in free[:_TRIED] if shown is None or _seen(row, shown)), free[0])
         told += 1
         taken.add(element)
-        yield view, kind, [element], left[name], name if claims[element] <= len({row[2] for row in having}) else ""
+        if claims[element] > 1:
+            shared.add((view, kind, value))
+        yield view, kind, [element], value, name if claims[element] == 1 else ""
 
 
-def of_circle(name: str) -> bool:
-    """Return whether a name says that a dimension is one of a circle."""
-    return bool(OF_RADIUS.search(name) or OF_DIAMETER.search(name))
+def _elsewhere(name: str) -> bool:
+    """Return whether a name says that a dimension is one of a circle, or a coordinate."""
+    return any(kind.search(name) for kind in (OF_RADIUS, OF_DIAMETER, PLACE))
 
 
 def _seen(row: tuple[str, str, Any], shown: Callable[[str, Any], bool]) -> bool:
@@ -74,8 +80,10 @@ def _having(
 ) -> list[tuple[str, str, Any]]:
     """Return view, kind and element of all that may have a dimension: circles or edges; none where both may."""
     radius, diameter, edge = OF_RADIUS.search(name), OF_DIAMETER.search(name), OF_EDGE.search(name)
+    if PLACE.search(name) and not radius:
+        return []
     round_ones = [(row[0], "Radius", row[1]) for row in circles if abs(row[2] - value) < SAME and not diameter]
-    if not round_ones and not radius:
+    if not round_ones and (diameter or OF_HOLE.search(name)) and not radius:
         round_ones = [(row[0], "Diameter", row[1]) for row in circles if abs(2 * row[2] - value) < SAME]
     straight = [(row[0], row[1], row[2]) for row in edges if abs(row[3] - value) < SAME]
     if radius or diameter:
