@@ -34,6 +34,7 @@ part product tray
 build product --out run --verify sampled --export urdf,mjcf
 check run --motion --joints --support
 certify run --budget 1
+certify run --budget 1 --within-tolerance --tolerance-class m
 verify-certificate run/certificate.json
 export run --to urdf,mjcf,step
 bom run --cuts --to csv,xlsx
