@@ -1,22 +1,29 @@
-"""Bindings of a task's checks to bodies, derived from its reference: what each joint that is asked for moves, and which joints surfaces make.
+"""Bindings of a task's checks to bodies, derived from its reference.
 
+What each joint that is asked for moves, which joints surfaces make, and, where a picture shows it, where parts lie and which hand it is.
 The bounds are wide, because another construction of the same product is another share of its matter; a disc, a wire or a missing body is outside.
 """
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from articad.kinematics.joints import JointType
-from articad_bench.checks import AnyCheck, Joints, Made, Moves, moved_share
+from articad_bench.checks import AnyCheck, Joints, Made, Moves, Parts, moved_share
+from articad_bench.likeness_checks import Arranged, Handed, Matter, arrangement, filled, handedness, moments_of
 from articad_bench.subject import Subject
 from articad_bench.task import Task
 
-__all__ = ["bindings", "bound"]
+__all__ = ["HANDED", "bindings", "bound", "shows_hands"]
 
 VOLUME: Final = 5.0  # times less or more of the matter
 GREATEST: Final = 2.5  # times less, for the joint that moves most
 SIZE: Final = 2.0  # times smaller or larger, as a share of the whole
+HAND: Final = 0.02  # by which the moments of mirror images differ, at least, where a hand can be told
+HANDED: Final = re.compile(r"\b(left|right|(anti|counter)?clockwise)\b", re.IGNORECASE)
+"""Words of a prompt that tell a product from its mirror image."""
+BOUND: Final = (Moves, Made, Arranged, Handed, Matter)
 
 
 def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
@@ -31,6 +38,8 @@ def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
         if not isinstance(check, Joints) or check.joint.type is JointType.FIXED or check.number[0] < 1:
             continue
         shares = [moved_share(subject, joint) for joint in check.joint.found(subject)]
+        if not shares:
+            continue
         volume, size = zip(*shares, strict=True)
         sizes = (_rounded(min(size) / SIZE), _rounded(max(size) * SIZE))
         all_of_them = (_rounded(min(volume) / VOLUME), min(1.0, _rounded(max(volume) * VOLUME)))
@@ -39,12 +48,31 @@ def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
             checks.append(Moves(joint=check.joint, volume=(_rounded(max(volume) / GREATEST), 1.0), size=sizes))
     if any(joint.type is not JointType.FIXED for joint in subject.assembly.joints):
         checks.append(Made(except_for=len(Made.wrong(subject))))
-    return tuple(checks)
+    share = filled(subject)
+    checks.append(Matter(share=(_rounded(share / VOLUME), min(1.0, _rounded(share * VOLUME)))))
+    return (*checks, *_likeness(task, subject))
+
+
+def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
+    """Return checks of what a picture shows; which hand it is may be said in words as well."""
+    checks: list[AnyCheck] = []
+    count = len(subject.shaped)
+    if task.images and count > 1 and any(isinstance(check, Parts) and check.number == (count, count) for check in task.checks):
+        rows = arrangement(subject)
+        checks.append(Arranged(parts=tuple(tuple(round(value, 4) for value in row) for row in rows)))
+    if shows_hands(task) and handedness(subject) > HAND:
+        checks.append(Handed(matter=tuple(round(value, 4) for value in moments_of(subject).tolist())))
+    return checks
+
+
+def shows_hands(task: Task) -> bool:
+    """Return whether a picture or a word of a task tells the product from its mirror image."""
+    return bool(task.images or HANDED.search(task.prompt))
 
 
 def bound(task: Task, subject: Subject) -> Task:
     """Return a task with its bindings in place of those that it has."""
-    others = tuple(check for check in task.checks if not isinstance(check, Moves | Made))
+    others = tuple(check for check in task.checks if not isinstance(check, BOUND))
     return task.model_copy(update={"checks": (*others, *bindings(task, subject))})
 
 

@@ -11,6 +11,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from articad.assembly import Assembly
 from articad.errors import ArticadError
 from articad.kernels.kernel import BuildCache, PartKernel
@@ -26,7 +28,16 @@ __all__ = ["SCHEMA", "CheatRow", "page", "refused_by", "run_cheats"]
 SCHEMA: Final = "articad.bench-cheats/1"
 SAME: Final = 0.01  # share of the matter by which a mirror image may differ from what it mirrors
 _RESULTS, _PAGE = "cheats.json", "cheats.md"
-_SOURCES: Final = ("check.py", "checks.py", "shape_checks.py", "path_checks.py", "solids.py", "subject.py", "cheats.py")
+_SOURCES: Final = (
+    "check.py",
+    "checks.py",
+    "shape_checks.py",
+    "path_checks.py",
+    "likeness_checks.py",
+    "solids.py",
+    "subject.py",
+    "cheats.py",
+)
 _COSTLY: Final = ("made", "captive", "clear_in_motion", "certified", "simulates")  # the least costly first
 
 _ABOUT: Final = """\
@@ -142,7 +153,7 @@ def _tried(
             continue
         if cheat is None:
             continue
-        same = kind == "mirrored" and _same(built, cheat.assembly)
+        same = the_same(kind, built, cheat.assembly)
         failed = ("", "") if same else refused_by(task, Subject(cheat.assembly))
         row = CheatRow(
             task.name, kind, None if failed is None or same else failed[0], "" if failed is None else failed[1][:200], same, digest
@@ -162,8 +173,28 @@ def refused_by(task: Task, subject: Subject) -> tuple[str, str] | None:
     return None
 
 
-def _same(reference: Assembly, mirrored: Assembly) -> bool:
-    """Return whether a mirror image is the same product: the same matter in the same place, about the middle, and threads of the same hands."""
+def the_same(kind: str, reference: Assembly, cheat: Assembly) -> bool:
+    """Return whether a cheat is the product itself: the mirror image of a symmetric one, or one whose exchanged bodies are alike."""
+    if kind == "mirrored":
+        return _same_mirrored(reference, cheat)
+    return kind == "swapped" and _same_parts(reference, cheat)
+
+
+def _same_parts(reference: Assembly, swapped: Assembly) -> bool:
+    """Return whether bodies of the same volume fill the same boxes."""
+    first, second = (
+        sorted([*mesh.bounds.ravel().round(2).tolist(), round(abs(mesh.volume), 1)] for mesh in placed(Subject(each)))
+        for each in (reference, swapped)
+    )
+    size = float(Subject(reference).size.max())
+    return all(
+        float(np.abs(np.subtract(a[:6], b[:6])).max()) <= SAME * size and abs(a[6] - b[6]) <= SAME * a[6]
+        for a, b in zip(first, second, strict=True)
+    )
+
+
+def _same_mirrored(reference: Assembly, mirrored: Assembly) -> bool:
+    """Return whether a mirror image fills the same place, about the middle, and threads have the same hands."""
     leads = sorted(joint.lead for joint in reference.joints if joint.lead)
     if leads != sorted(-lead for lead in leads):
         return False

@@ -21,6 +21,7 @@ from articad.connectors import SE3
 from articad.geometry import Part, TriMesh, box, cylinder, sphere
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.plan.resolve import Waiver
+from articad_bench.bindings import shows_hands
 from articad_bench.checks import Freedoms, Joints, Loops, Parts, PartSize, Size
 from articad_bench.subject import Subject
 from articad_bench.task import Task
@@ -32,7 +33,6 @@ SHELL: Final = 0.98  # of the size of a body, its hollow
 FACTOR: Final = 10.0
 DENSITY: Final = 1000.0  # kg/m³
 DISC_MM: Final = 20.0
-_HANDED: Final = re.compile(r"\b(left|right|(anti|counter)?clockwise)\b", re.IGNORECASE)
 MIRROR: Final = np.diag([1.0, -1.0, 1.0, 1.0])
 
 
@@ -204,7 +204,7 @@ def _shells(_task: Task, reference: Assembly) -> Assembly:
 def _mirrored(task: Task, reference: Assembly) -> Assembly | None:
     """Return the mirror image of the reference across the plane y = 0, threads included, if the task says which hand is meant."""
     mechanism = reference.mechanism
-    if not (task.images or _HANDED.search(task.prompt) or any(joint.lead for joint in reference.joints)):
+    if not (shows_hands(task) or any(joint.lead for joint in reference.joints)):
         return None
     joints = []
     for joint in reference.joints:

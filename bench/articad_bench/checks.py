@@ -27,6 +27,7 @@ from articad.simulation.examine import simulate_assembly, simulate_file
 from articad_bench.check import Bounds, Vector, in_words
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
+from articad_bench.likeness_checks import Arranged, Handed, Matter
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
@@ -524,7 +525,10 @@ AnyCheck = Annotated[
     | Symmetric
     | Lead
     | Made
-    | Moves,
+    | Moves
+    | Arranged
+    | Handed
+    | Matter,
     Field(discriminator="kind"),
 ]
 

@@ -361,7 +361,9 @@ def _crossings(mesh: TriMesh, start: FloatArray, pitch: FloatArray, shape: tuple
 
 
 def asymmetry(grid: Grid, axis: int) -> float:
-    """Return what share of a shape has nothing opposite it in the plane across an axis through the middle of its box."""
+    """Return what share of a shape has nothing opposite it in the plane across an axis through the middle of its box; all, where no cell is met."""
+    if not grid.any():
+        return 1.0
     return float((grid ^ np.flip(grid, axis)).sum()) / float(2 * grid.sum())
 
 

@@ -18,7 +18,7 @@ from articad.geometry import Part, TriMesh, box, cylinder
 from articad.kinematics.joints import Joint
 from articad.plan.resolve import Waiver
 from articad_bench.bindings import bindings, bound
-from articad_bench.cheat_run import CheatRow, page, refused_by, run_cheats
+from articad_bench.cheat_run import CheatRow, page, refused_by, run_cheats, the_same
 from articad_bench.cheats import CHEATS, cheats_of
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, Task, tasks_in
@@ -165,13 +165,72 @@ def test_bindings_hold_of_the_reference_and_of_another_construction_and_not_of_a
     other = of(("plate", slim.parts["plate"].mesh), ("lever", lever), joints=list(slim.joints))  # type: ignore[arg-type]
     crumb = of(("plate", slim.parts["plate"].mesh), ("lever", placed(box(2, 2, 2), 0, 7, 8)), joints=list(slim.joints))  # type: ignore[arg-type]
 
-    assert [check.kind for check in checks] == ["moves", "made"]
+    assert [check.kind for check in checks] == ["moves", "made", "matter"]
     assert all(check.judge(Subject(hinge())).ok and check.judge(other).ok for check in checks)
     assert not checks[0].judge(crumb).ok
-    assert [check.kind for check in bound(bound(task(), Subject(hinge())), Subject(hinge())).checks][-2:] == ["moves", "made"]
+    assert [check.kind for check in bound(bound(task(), Subject(hinge())), Subject(hinge())).checks][-3:] == ["moves", "made", "matter"]
+
+
+def pictured(parts: int) -> Task:
+    return task(prompt="", images=["drawing.png"], checks=[{"kind": "parts", "number": [parts, parts]}])
+
+
+def shelves(*heights: float, second: float = 30.0) -> Subject:
+    """A board with shelves of 60 x 40 and 60 x `second` mm at two heights."""
+    sides = (40.0, second)
+    bodies = [(f"shelf_{i}", placed(box(60, sides[i], 4), 0, 0, height)) for i, height in enumerate(heights)]
+    joints = [joint(f"held_{i}", "fixed", ("board", at(0)), (name, at(0))) for i, (name, _) in enumerate(bodies)]
+    return of(("board", placed(box(4, 60, 120), -32, 0, 0)), *bodies, joints=joints)
+
+
+def test_parts_lie_where_a_picture_shows_them_whichever_way_the_whole_is_turned() -> None:
+    shown = shelves(-40.0, 40.0)
+    (check,) = (each for each in bindings(pictured(3), shown) if each.kind == "arranged")
+
+    assert check.judge(shown).ok
+    assert check.judge(shelves(-38.0, 42.0, second=32.0)).ok
+    assert not check.judge(shelves(-40.0, 5.0)).ok  # a shelf elsewhere
+    assert not check.judge(shelves(40.0, -40.0)).ok  # the deeper one above
+    quarter = [
+        (name, part.mesh.transformed(SE3.rot_z(math.pi / 2))) for name, part in shown.assembly.parts.items() if part.mesh is not None
+    ]
+    assert check.judge(of(*quarter, joints=list(shown.assembly.joints))).ok
+
+
+def test_a_mirror_image_is_told_from_what_a_picture_shows_and_another_construction_is_not() -> None:
+    def with_handle(y: float, width: float) -> Subject:
+        body = made("Add", solid(box(100, 60, 20)), solid(placed(box(width, 10, 40), 35, y, 20)))
+        held = joint("held", "fixed", ("body", at(0)), ("foot", at(0)))
+        return of(("body", body), ("foot", placed(box(20, 20, 10), -30, 0, -15)), joints=[held])
+
+    shown = with_handle(25, 12)
+    (check,) = (each for each in bindings(pictured(2), shown) if each.kind == "handed")
+
+    assert check.judge(shown).ok
+    assert check.judge(with_handle(22, 16)).ok
+    assert not check.judge(with_handle(-25, 12)).ok
+    assert [each.kind for each in bindings(pictured(2), with_handle(0, 12))] == ["matter", "arranged"]  # it is its own mirror image
+    assert [each.kind for each in bindings(task(prompt="A block with a handle."), shown)] == ["matter"]  # nothing tells left from right
 
 
 # ---------------------------------------------------------------------- the suite
+
+
+def test_a_shell_of_a_thick_board_fills_too_little() -> None:
+    board = of(("board", box(800, 400, 30)), joints=[])
+    (check,) = bindings(task(checks=[]), board)
+    (shell,) = cheats_of(task(checks=[]), board.assembly, ("shells",))
+
+    assert check.judge(board).ok
+    assert check.judge(of(("board", box(800, 400, 18)), joints=[])).ok
+    assert form({"kind": "solids"}).judge(Subject(shell.assembly)).ok  # its walls are 0.3 mm
+    assert not check.judge(Subject(shell.assembly)).ok
+
+
+def test_bodies_of_the_same_shape_may_be_exchanged() -> None:
+    """That is the same product; two of different shapes make another."""
+    assert the_same("swapped", shelves(-40.0, 40.0, second=40.0).assembly, shelves(40.0, -40.0, second=40.0).assembly)
+    assert not the_same("swapped", shelves(-40.0, 40.0).assembly, shelves(40.0, -40.0).assembly)
 
 
 def test_no_cheat_of_a_bound_task_passes_and_the_reference_does() -> None:

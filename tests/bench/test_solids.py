@@ -144,6 +144,7 @@ def test_only_what_is_its_own_mirror_image_is_symmetric() -> None:
     with_lump = occupied([plain, lump])[0]
     assert asymmetry(with_lump, 0) > 0.01
     assert asymmetry(with_lump, 1) == 0
+    assert asymmetry(np.zeros((4, 4, 4), dtype=bool), 0) == 1  # wires between the cells are not symmetric
 
 
 @pytest.mark.parametrize(("com", "angle"), [((0, 0, 10), 45.0), ((5, 0, 10), math.degrees(math.atan2(5, 10))), ((15, 0, 10), -26.565)])

@@ -272,6 +272,37 @@ def _crumbs(_check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, parts))
 
 
+def _corners(_check: Check, subject: Subject) -> Subject:
+    """Of every body two crumbs are left, at opposite corners of its box."""
+    parts = []
+    for part in subject.assembly.parts.values():
+        mesh = part.mesh
+        if mesh is not None:
+            mesh = merged([box(0.1, 0.1, 0.1).transformed(SE3.from_translation(corner)) for corner in mesh.bounds])
+        parts.append(part if mesh is None else shaped_as(part, mesh))
+    return Subject(changed(subject.assembly, parts))
+
+
+def _one_aside(_check: Check, subject: Subject) -> Subject:
+    """The last part lies far beside its place."""
+    last = subject.shaped[-1]
+    aside = SE3.from_translation(np.array([0.0, 0.0, float(np.linalg.norm(subject.size))]))
+    parts = [
+        shaped_as(part, part.mesh.transformed(aside)) if name == last and part.mesh is not None else part
+        for name, part in subject.assembly.parts.items()
+    ]
+    return Subject(changed(subject.assembly, parts))
+
+
+def _mirror_image(_check: Check, subject: Subject) -> Subject:
+    """Every body is where its mirror image would be."""
+    parts = []
+    for name, part in subject.assembly.parts.items():
+        mirror = subject.rest[name].inverse().matrix @ np.diag([1.0, -1.0, 1.0, 1.0]) @ subject.rest[name].matrix
+        parts.append(part if part.mesh is None else shaped_as(part, part.mesh.reflected(mirror)))
+    return Subject(changed(subject.assembly, parts))
+
+
 def _nothing_around(_check: Check, subject: Subject) -> Subject:
     """Parts that could hold others have no shape."""
     moving = {joint.child for joint in subject.assembly.joints if joint.type is not JointType.FIXED}
@@ -331,6 +362,9 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "captive": _nothing_around,
     "made": _nothing_around,
     "moves": _crumbs,
+    "matter": _corners,
+    "arranged": _one_aside,
+    "handed": _mirror_image,
     "unchanged": _all_new,
     "holes": _larger,
     "studs": _larger,

@@ -1,0 +1,157 @@
+"""Checks that compare the product at rest with what a picture shows: where its parts lie, which are the larger ones, and which of two mirror images it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations, product
+from typing import Final, Literal
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from articad.arrays import FloatArray
+from articad_bench.check import Bounds, Check
+from articad_bench.shape_checks import placed
+from articad_bench.subject import Subject
+
+PLACE: Final = 0.12  # of the diagonal of the whole, by which a part may lie beside its place
+APART: Final = 0.03  # of the diagonal: places nearer to each other are not told apart
+LARGER: Final = (1.3, 1.04)  # in volume and in size: parts nearer to each other than this have no order
+TURNS: Final = tuple(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]], dtype=np.float64) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1)))
+"""What the whole may be turned by about the upright axis: no picture says which way is x."""
+MIRROR: Final = np.diag([1.0, -1.0, 1.0])
+POWERS: Final = tuple(p for p in product(range(4), repeat=3) if 1 <= sum(p) <= 3)
+_POINT_WEIGHTS: Final = (-0.8, 0.45)  # of the middle of a tetrahedron, and of each point between it and a corner: exact to the third degree
+
+
+Row = tuple[float, float, float, float, float]
+
+
+class Arranged(Check):
+    """Each part lies where it is shown, and of two parts the larger one is that which is shown larger; the whole may be turned by quarters.
+
+    Attributes:
+        parts: Of each part its centre from the middle of the whole, its share of the matter, and its size; lengths as shares of the
+            whole's diagonal.
+    """
+
+    kind: Literal["arranged"] = "arranged"
+    parts: tuple[Row, ...]
+
+    @property
+    def wanted(self) -> str:
+        return f"{len(self.parts)} parts lie where they are shown, within {100 * PLACE:g} % of the whole, in their order of size"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        if len(subject.shaped) != len(self.parts):
+            return False, f"{len(subject.shaped)} parts"
+        found, wanted = np.array(arrangement(subject)), np.array(self.parts)
+        tries = [_compared(found, wanted, turn) for turn in TURNS]
+        beside, reversed_ = min(tries, key=lambda each: (each[0] > PLACE or each[1] > 0, each))
+        return (
+            beside <= PLACE and not reversed_,
+            f"the worst lies {100 * beside:.2g} % beside its place, {reversed_} pairs in the other order",
+        )
+
+
+def _compared(found: FloatArray, wanted: FloatArray, turn: FloatArray) -> tuple[float, int]:
+    """Return how far the worst part lies beside its place, and how many pairs of parts have the other order of size."""
+    apart = np.linalg.norm(found[:, None, :3] - (wanted[:, :3] @ turn.T)[None], axis=2)
+    rows, columns = linear_sum_assignment(apart**2)
+    mine = found[rows[np.argsort(columns)]]
+    wrong = 0
+    for a, b in combinations(range(len(wanted)), 2):
+        if np.linalg.norm(wanted[a, :3] - wanted[b, :3]) < APART:
+            continue
+        for column, least in zip((3, 4), LARGER, strict=True):
+            shown, is_ = np.log(wanted[a, column] / wanted[b, column]), np.log(mine[a, column] / mine[b, column])
+            wrong += bool(abs(shown) > np.log(least) and shown * is_ < 0)
+    return float(apart[rows, columns].max()), wrong
+
+
+def arrangement(subject: Subject) -> list[Row]:
+    """Return for each part its centre, share of the matter and size, as `Arranged` states them."""
+    meshes = placed(subject)
+    ends = subject.corners(subject.rest)
+    diagonal, volumes = float(np.linalg.norm(ends[1] - ends[0])), [abs(mesh.volume) for mesh in meshes]
+    rows: list[Row] = []
+    for mesh, volume in zip(meshes, volumes, strict=True):
+        x, y, z = ((mesh.solid_integrals()[1] - ends.mean(axis=0)) / diagonal).tolist()
+        rows.append((x, y, z, volume / sum(volumes), float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))) / diagonal))
+    return rows
+
+
+class Matter(Check):
+    """The share of its box that the whole fills with matter, at rest: a shell of a solid product, or a wire of it, fills little."""
+
+    kind: Literal["matter"] = "matter"
+    share: Bounds
+
+    @property
+    def wanted(self) -> str:
+        low, high = self.share
+        return f"matter fills {100 * low:.2g} to {100 * high:.2g} % of its box"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        share = filled(subject)
+        return self.share[0] <= share <= self.share[1], f"{100 * share:.2g} %"
+
+
+def filled(subject: Subject) -> float:
+    """Return the share of its box that a product fills with matter, at rest."""
+    return sum(abs(mesh.volume) for mesh in placed(subject)) / float(subject.size.prod())
+
+
+class Handed(Check):
+    """It is the product that is shown, and not its mirror image: its matter lies more like that of the one than of the other.
+
+    Attributes:
+        matter: `moments` of the product that is shown.
+    """
+
+    kind: Literal["handed"] = "handed"
+    matter: tuple[float, ...]
+
+    @property
+    def wanted(self) -> str:
+        return "what is shown, and not its mirror image"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        meshes = placed(subject)
+        wanted = np.array(self.matter)
+        straight = [float(np.linalg.norm(moments(_turned(subject, turn)) - wanted)) for turn in TURNS]
+        mirrored = [float(np.linalg.norm(moments(_turned(subject, turn @ MIRROR)) - wanted)) for turn in TURNS]
+        return bool(meshes) and min(straight) < min(mirrored), f"differs by {min(straight):.2g}, its mirror image by {min(mirrored):.2g}"
+
+
+def handedness(subject: Subject) -> float:
+    """Return by how much the moments of a product differ from those of its mirror image."""
+    own = moments_of(subject)
+    return min(float(np.linalg.norm(moments(_turned(subject, turn @ MIRROR)) - own)) for turn in TURNS)
+
+
+def moments_of(subject: Subject) -> FloatArray:
+    """Return the `moments` of a product as it stands at rest."""
+    return moments(_turned(subject, TURNS[0]))
+
+
+def _turned(subject: Subject, turn: FloatArray) -> list[FloatArray]:
+    """Return the triangles of all parts at rest, `(n, 3, 3)` each, about the middle of the whole and turned or mirrored."""
+    middle = subject.corners(subject.rest).mean(axis=0)
+    order = [0, 1, 2] if np.linalg.det(turn) > 0 else [0, 2, 1]
+    return [((mesh.vertices - middle) @ turn.T)[mesh.triangles[:, order]] for mesh in placed(subject)]
+
+
+def moments(bodies: Sequence[FloatArray]) -> FloatArray:
+    """Return the moments of matter up to the third degree, in halves of the sides of its box, per volume `(19,)`.
+
+    Args:
+        bodies: Triangles of closed surfaces, `(n, 3, 3)` each, about the middle of their box.
+    """
+    corners = np.concatenate(bodies) / np.maximum(np.abs(np.concatenate(bodies)).max(axis=(0, 1)), 1e-9)
+    volumes = np.linalg.det(corners) / 6
+    tetrahedra = np.concatenate([np.zeros((len(corners), 1, 3)), corners], axis=1)
+    centre = tetrahedra.mean(axis=1)
+    points = [(_POINT_WEIGHTS[0], centre)] + [(_POINT_WEIGHTS[1], (2 * centre + tetrahedra[:, i]) / 3) for i in range(4)]
+    totals = [sum(weight * float((volumes * (at**power).prod(axis=1)).sum()) for weight, at in points) for power in POWERS]
+    return np.array(totals) / float(volumes.sum())
