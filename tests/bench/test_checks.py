@@ -21,6 +21,15 @@ from tests.bench.wrong import VARIANTS, wrong_for
 pytestmark = pytest.mark.slow
 
 HINGE: dict[str, Any] = {"type": "revolute", "axis": [0, 0, 1]}
+
+
+def bound(name: str, kind: str) -> dict[str, Any]:
+    """Return the check of a kind that binds a task to its reference."""
+    ((_, task),) = tasks_in(TASKS, names=[name])
+    (row,) = (check.model_dump() for check in task.checks if check.kind == kind)
+    return row
+
+
 CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("wardrobe", {"kind": "parts", "number": [18, 18]}),
     ("desk_lamp", {"kind": "freedoms", "number": 7}),
@@ -55,6 +64,7 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("peaucellier_board", {"kind": "straight", "mm": [90, 125], "off": 0.05}),
     ("wiper_tandem", {"kind": "level", "mm": [56, 68], "number": [1, 999]}),
     ("planetary_hoist", {"kind": "turns", "ratio": 4.5, "number": [1, 3]}),
+    *(("hinge_pintle_gate", bound("hinge_pintle_gate", kind)) for kind in ("matter", "arranged", "handed")),
 ]
 
 
