@@ -4,7 +4,8 @@ Each piece is an intersection of half-spaces, grown around a seed point. For eac
 the whole triangle on its far side. So no surface point is inside the piece. The piece is connected and its seed is inside the solid,
 hence so is the piece.
 
-1. Seeds: from points of the surface, half-way through the material along the inward normal.
+1. Seeds: from points of the surface, half-way through the material along the inward normal. The whole surface must enclose them: its
+winding number about a seed is at least 1. So surfaces that cross or repeat themselves have pieces only where they enclose material.
 2. Growth (as in IRIS, Deits and Tedrake 2015, without the ellipsoid): the triangle nearest to the seed gives a plane, all triangles
 beyond that plane are done, and so on until none is left. The plane is the triangle's own one, so that flat faces are exact and bores get
 tangent planes, or else the plane through its nearest point. In front of convex round surfaces the plane moves inwards a little, so that
@@ -33,6 +34,7 @@ from articad.geometry.faces import smooth_patches
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
 from articad.geometry.shapes import box, cylinder, sphere
+from articad.geometry.winding import winding_numbers
 
 __all__ = ["INSIDE_MM", "MOST_PIECES", "Inscribed", "Piece", "inscribed", "missing_bound"]
 
@@ -40,7 +42,7 @@ __all__ = ["INSIDE_MM", "MOST_PIECES", "Inscribed", "Piece", "inscribed", "missi
 MOST_PIECES: Final = 32
 BOUND_MM, BOUND_SHARE = 0.5, 0.01  # how far the solid may extend beyond its pieces: the larger of the two; the share is of its diagonal
 INSIDE_MM: Final = 1e-4  # by which rounding may move a piece outside the mesh
-SCHEME: Final = "articad.inscribed/2"  # must change with anything that changes pieces
+SCHEME: Final = "articad.inscribed/3"  # must change with anything that changes pieces
 
 _SLACK_MM, _SLACK_SHARE = 0.25, 0.004  # how far a plane may move inwards: the larger of the two; the share is of the diagonal
 _SLACKS = (0.0, 0.04, 0.25, 0.5, 1.0)  # of that: the values that are tried
@@ -58,6 +60,7 @@ _TIGHTER = (1.0, 0.4, 0.1)  # of the slack, in the same tries
 _SURPLUS = 2  # multiple of the permitted number of pieces that are collected before a choice among them
 _RELAXED = 1.1  # ratio of successive bounds that are tried, if there are too few pieces
 _SEGMENTS = 48  # in the meshes of recognised cylinders
+_FLAT = 1e-5  # a box that is thinner than this share of its length has no certain axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,10 +182,9 @@ class _Cover:
         self.size = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
         self.volume = mesh.volume
         self.full = _Facets.of(mesh)
-        coarse = body.simplify(_SIMPLIFY * bound) if len(mesh.triangles) > _COARSE_TRIANGLES else body
-        found = coarse.to_mesh64()
-        self.coarse = _Facets.of(TriMesh(np.array(found.vert_properties[:, :3]), np.array(found.tri_verts, dtype=np.int32)))
-        self.same = self.coarse.count == self.full.count
+        self.same = len(mesh.triangles) <= _COARSE_TRIANGLES  # manifold3d may swap edges, so only the mesh itself is the same
+        coarse = body if self.same else body.simplify(_SIMPLIFY * bound)
+        self.coarse = self.full if self.same else _Facets.of(_mesh(coarse))
         self.points, self.seeds, self.depths = _samples(self.coarse, coarse, self.size)
         self.limits = np.minimum(bound, np.maximum(BOUND_MM, _OF_DEPTH * self.depths))
         self.slack = min(bound / 2, max(_SLACK_MM, _SLACK_SHARE * self.size))
@@ -252,9 +254,9 @@ class _Cover:
 
     def _around(self, seed: FloatArray, slack: float) -> list[_Grown]:
         """Return the piece around a seed, and the one around its centre."""
-        found = []
+        found: list[_Grown] = []
         for _ in range(2):
-            planes = _grown(self.coarse, seed, slack, self.size)
+            planes = _grown(self.coarse, seed, slack, self.size) if _encloses(self.full, seed) else None
             one = None if planes is None else _polytope(planes, seed)
             if one is None:
                 break
@@ -375,7 +377,7 @@ def _samples(facets: _Facets, body: manifold3d.Manifold, size: float) -> tuple[F
         hits = body.ray_cast(tuple(start - lift * normal), tuple(start - 2 * size * normal))
         far = [hit.distance for hit in hits]
         depth = far[0] * 2 * size if far else 0.0
-        if depth > 10 * lift:
+        if depth > max(10 * lift, INSIDE_MM):
             seeds.append(start - normal * depth / 2)
             depths.append(depth)
             kept.append(index)
@@ -392,7 +394,7 @@ def _nearest(facets: _Facets, seed: FloatArray) -> FloatArray:
         other = _on_segment(start, way, seed)
         nearer = ((other - seed) ** 2).sum(axis=1) < ((best - seed) ** 2).sum(axis=1)
         best = np.where(nearer[:, None], other, best)
-    within = np.ones(facets.count, dtype=bool)
+    within = facets.areas > 0
     for start, inward in zip((a, b, a), facets.inward, strict=True):  # the edges ab, bc, ca
         within &= ((inside - start) * inward).sum(axis=1) >= 0
     return np.asarray(np.where(within[:, None], inside, best))
@@ -480,7 +482,7 @@ def _fewer_corners(one: _Grown) -> _Grown:
     corners = one.piece.mesh.vertices
     if one.piece.primitive is not None or len(corners) <= _MOST_CORNERS:
         return one
-    directions = sphere(1.0, 8).vertices
+    directions = sphere(1.0, 4).vertices
     chosen = list(dict.fromkeys((corners @ directions.T).argmax(axis=0).tolist()))
     planes = np.zeros((0, 4))
     while len(chosen) < _MOST_CORNERS:
@@ -495,8 +497,7 @@ def _fewer_corners(one: _Grown) -> _Grown:
 
 
 def _tidy(solid: manifold3d.Manifold) -> TriMesh | None:
-    found = solid.to_mesh64()
-    mesh = TriMesh(np.array(found.vert_properties[:, :3], dtype=np.float64), np.array(found.tri_verts, dtype=np.int32))
+    mesh = _mesh(solid)
     return mesh if mesh.is_closed and mesh.volume > 0 else None
 
 
@@ -513,6 +514,8 @@ def _as_box(mesh: TriMesh) -> Piece | None:
     size = float(np.abs(ways).max())
     for i, j, k in combinations(range(7), 3):
         a, b, c = ways[[i, j, k]]
+        if min(np.linalg.norm(a), np.linalg.norm(b), np.linalg.norm(c)) < _FLAT * size:
+            return None
         if max(abs(a @ b), abs(b @ c), abs(a @ c)) > 1e-7 * size * size:
             continue
         wanted = np.array([a + b, a + c, b + c, a + b + c])
@@ -582,7 +585,7 @@ def _ball(facets: _Facets, corners: FloatArray, normals: FloatArray, slack: floa
     solution, *_ = np.linalg.lstsq(system, (corners**2).sum(axis=1), rcond=None)
     center = solution[:3]
     r = float(np.sqrt(max(solution[3] + center @ center, 0.0)))
-    if r <= 0 or float(np.abs(np.linalg.norm(corners - center, axis=1) - r).max()) > slack:
+    if r <= 0 or float(np.abs(np.linalg.norm(corners - center, axis=1) - r).max()) > slack or not _encloses(facets, center):
         return None
     middles = corners.reshape(-1, 3, 3).mean(axis=1)
     if float(((middles - center) * normals).sum(axis=1).min()) <= 0:  # concave
@@ -622,6 +625,8 @@ def _cylinder(facets: _Facets, corners: FloatArray, normals: FloatArray, axis: F
     if float(_to_origin(planar[near]).min(initial=np.inf)) < r - slack - tolerance:
         return None
     center = np.round(middle[0] * x + middle[1] * y + axis * (low + high) / 2, _ROUND) + 0.0
+    if not _encloses(facets, center):
+        return None
     r, length = round(r, _ROUND), round(high - low, _ROUND)
     angles = 2 * np.pi * np.arange(_SEGMENTS) / _SEGMENTS
     around = np.cos(angles)[:, None] * x + np.sin(angles)[:, None] * y
@@ -666,6 +671,16 @@ def _distance_to(points: FloatArray, grown: list[_Grown], placed: list[TriMesh])
             best = min(best, float(np.linalg.norm(_nearest(facets[which], points[index]) - points[index], axis=1).min()))
         worst = max(worst, best)
     return worst
+
+
+def _encloses(facets: _Facets, point: FloatArray) -> bool:
+    """Whether a whole surface encloses a point: its winding number is 1, or more where the surface overlaps itself."""
+    return bool(winding_numbers(point[None], facets.corners)[0] > 0.5)
+
+
+def _mesh(solid: manifold3d.Manifold) -> TriMesh:
+    found = solid.to_mesh64()
+    return TriMesh(np.array(found.vert_properties[:, :3], dtype=np.float64), np.array(found.tri_verts, dtype=np.int32))
 
 
 def _manifold(mesh: TriMesh) -> manifold3d.Manifold:

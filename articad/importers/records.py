@@ -18,6 +18,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
 from articad.export.fingerprint import fingerprint
 from articad.findings import Finding
+from articad.geometry.faceted import facets
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Primitive, Shape, Solid
@@ -30,12 +31,11 @@ from articad.plan.resolve import Fit, Material, Waiver
 from articad.texts import SPOILED, spoiled
 
 VERSION = 1
-PRIMITIVES = ("box", "cylinder", "sphere", "capsule", "ellipsoid")
+PRIMITIVES = {"box": 3, "cylinder": 2, "sphere": 1, "capsule": 2, "ellipsoid": 3}  # numbers of their sizes
 
 Record = dict[str, Any]
 Scale = tuple[float, float, float]
 
-_FACETS = 0.05  # of a primitive's size: how far the facets of its stored mesh may lie from it
 _UNIT: Scale = (1.0, 1.0, 1.0)  # articad writes meshes in mm
 
 
@@ -183,21 +183,18 @@ def _mesh_of(form: Primitive, stored: TriMesh | None) -> TriMesh:
     """Return the stored mesh of a primitive, of whatever facets, or one that is made if there is none.
 
     Raises:
-        ValueError: If the stored mesh has another size.
+        ValueError: If the stored mesh stands for something else.
     """
-    made = primitive_mesh(form)
-    if stored is None:
-        return made
-    if np.abs(stored.bounds - made.bounds).max() > _FACETS * np.ptp(made.bounds, axis=0).max():
-        raise ValueError("the mesh of a primitive has another size")
-    return stored
+    if stored is not None and not facets(stored, form):
+        raise ValueError(f"the mesh of a {form.kind} has another shape")
+    return primitive_mesh(form) if stored is None else stored
 
 
 def _primitive(record: list[Any] | None) -> Primitive | None:
     if record is None or record[0] not in PRIMITIVES:
         return None
     size = tuple(float(size) for size in record[1:])
-    if max(size) > LARGEST_MM:
+    if len(size) != PRIMITIVES[record[0]] or not all(0 < length <= LARGEST_MM for length in size):
         raise ValueError("the size of a shape is not plausible")
     return Primitive(record[0], size)
 

@@ -19,7 +19,8 @@ import numpy as np
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
-from articad.interference.body import Body, winding_numbers
+from articad.geometry.winding import winding_numbers
+from articad.interference.body import Body
 from articad.interference.freedoms import freedoms
 from articad.interference.motion import Chain, Route
 from articad.interference.overlap import VOLUME_NOISE_MM3, distance, intersection

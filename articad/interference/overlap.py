@@ -20,7 +20,8 @@ from articad.arrays import FloatArray
 from articad.connectors.quaternion import cross
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError
-from articad.interference.body import Body, make_bvh, winding_numbers
+from articad.geometry.winding import winding_numbers
+from articad.interference.body import Body, make_bvh
 
 VOLUME_NOISE_MM3 = 1e-9  # touching faces of centimetres leave up to 1e-12; a real overlap of 1e-6 mm has more
 DIRECT_TRIANGLES = 4000  # solids up to this size: a boolean costs less than FCL's search for contact (measured: 0.6x at 2k, 2.7x at 20k)

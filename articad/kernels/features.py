@@ -11,7 +11,7 @@ from articad.connectors.connector import Connector
 from articad.findings import Finding, Findings
 from articad.geometry.faces import Face, faces_of
 from articad.geometry.mesh import TriMesh
-from articad.interference.body import winding_numbers
+from articad.geometry.winding import winding_numbers
 from articad.kernels.contract import DRIFT_ANGLE, DRIFT_RADIAL_MM
 from articad.realisation.bores import at_height
 

@@ -12,7 +12,7 @@ import numpy as np
 from articad.arrays import FloatArray
 from articad.geometry.faces import Face, faces_of
 from articad.geometry.mesh import TriMesh
-from articad.interference.body import winding_numbers
+from articad.geometry.winding import winding_numbers
 from articad.plan.iso286 import limits, parsed_fit
 from articad.realisation.bores import bore_and_pin
 

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from articad.connectors.se3 import SE3
 from articad.geometry.inscribed import INSIDE_MM, MOST_PIECES, Inscribed, inscribed, missing_bound
-from articad.geometry.mesh import TriMesh
+from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.shapes import box, capsule, cylinder, sphere, tube
 
 FloatArray = NDArray[np.float64]
@@ -92,6 +92,101 @@ def test_pieces_of_many_random_solids_lie_inside_them(seed: int) -> None:
     found = inscribed(solid)
     if found is not None:
         assert_inside(found, solid)
+
+
+def damaged_solid(rng: np.random.Generator) -> TriMesh:
+    """A solid as other programs leave them: with slivers, cracks, repeated, crossing, hollow or reversed shells, rounded coordinates."""
+    mesh = random_solid(rng)
+    size = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+    for damage in rng.choice(7, size=int(rng.integers(1, 4)), replace=False):
+        middle = SE3.from_translation(mesh.vertices[rng.integers(len(mesh.vertices))])
+        other = box(*(size * rng.uniform(0.05, 0.5, 3))).transformed(middle)
+        if damage == 0:  # a shell that crosses the others
+            mesh = merged([mesh, other])
+        elif damage == 1:  # a shell that takes its matter away, wherever it is
+            mesh = merged([mesh, other.flipped()])
+        elif damage == 2:  # everything twice
+            mesh = merged([mesh, mesh])
+        elif damage == 3:  # edges cut at points that lie on them: triangles without area
+            mesh = with_slivers(mesh, rng)
+        elif damage == 4:  # coordinates of few digits
+            mesh = TriMesh(np.round(mesh.vertices, int(rng.integers(0, 4))), mesh.triangles)
+        elif damage == 5:  # of single precision, far from the origin
+            mesh = TriMesh((mesh.vertices + 1e4).astype(np.float32).astype(np.float64), mesh.triangles)
+        else:  # nearly flat
+            mesh = TriMesh(mesh.vertices * np.array([1, 1, 10.0 ** -rng.integers(2, 7)]), mesh.triangles)
+    return mesh
+
+
+def with_slivers(mesh: TriMesh, rng: np.random.Generator) -> TriMesh:
+    """Put a vertex into an edge of some triangles and close the crack with a triangle that has no area."""
+    vertices, triangles = list(mesh.vertices), [list(row) for row in mesh.triangles]
+    for index in rng.choice(len(triangles), size=min(8, len(triangles)), replace=False):
+        a, b, c = triangles[index]
+        vertices.append(vertices[a] + rng.uniform(0.001, 0.999) * (vertices[b] - vertices[a]))
+        new = len(vertices) - 1
+        triangles[index] = [a, new, c]
+        triangles += [[new, b, c], [a, b, new]]
+    return TriMesh(np.array(vertices), np.array(triangles, dtype=np.int32))
+
+
+def crossings(points: FloatArray, mesh: TriMesh, way: FloatArray) -> NDArray[np.intp]:
+    """Count how often rays from points leave the surface, less how often they enter it: at least 1 inside (Moeller and Trumbore 1997)."""
+    a, b, c = np.moveaxis(mesh.vertices[mesh.triangles], 1, 0)
+    ab, ac = b - a, c - a
+    h = np.cross(way, ac)
+    det = (ab * h).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        from_a = points[:, None] - a
+        u = (from_a * h).sum(axis=2) / det
+        q = np.cross(from_a, ab)
+        v = q @ way / det
+        t = (q * ac).sum(axis=2) / det
+        hit = (u > 0) & (v > 0) & (u + v < 1) & (t > 0)
+    return np.asarray((hit * -np.sign(det).astype(int)).sum(axis=1))
+
+
+def assert_enclosed(found: Inscribed, solid: TriMesh) -> None:
+    """Points inside the pieces, somewhat away from their surface, are inside the solid, as most of three rays have it."""
+    rng = np.random.default_rng(0)
+    for mesh in placed(found):
+        if not mesh.volume > 0 or float(np.ptp(mesh.vertices, axis=0).min()) < 20 * INSIDE_MM:
+            continue
+        corners, middle = mesh.vertices[mesh.triangles], mesh.vertices.mean(axis=0)
+        drawn = corners[rng.integers(len(corners), size=40)]
+        surface = (drawn * rng.dirichlet((1, 1, 1), 40)[:, :, None]).sum(axis=1)
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+        points = middle + rng.uniform(0.05, 0.98, (40, 1)) * (surface - middle)
+        deep = ((points[:, None] - corners[None, :, 0]) * normals[None]).sum(axis=2).max(axis=1) < -2 * INSIDE_MM
+        counts = np.sort([crossings(points[deep], solid, way) for way in rng.normal(size=(3, 3))], axis=0)[1]
+        assert (counts >= 1).all(), (mesh.volume, points[deep][counts < 1][:3])
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_pieces_of_a_damaged_solid_lie_where_its_surface_encloses_matter(seed: int) -> None:
+    solid = damaged_solid(np.random.default_rng(seed))
+    found = inscribed(solid)
+    if found is not None:
+        assert_enclosed(found, solid)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("seed", range(1000, 2000))
+def test_pieces_of_many_damaged_solids_lie_where_their_surfaces_enclose_matter(seed: int) -> None:
+    solid = damaged_solid(np.random.default_rng(seed))
+    found = inscribed(solid)
+    if found is not None:
+        assert_enclosed(found, solid)
+
+
+def test_triangles_without_area_cost_no_pieces() -> None:
+    whole = random_solid(np.random.default_rng(3))
+    found, plain = inscribed(with_slivers(whole, np.random.default_rng(0))), inscribed(whole)
+
+    assert found is not None
+    assert plain is not None
+    assert found.missing == pytest.approx(plain.missing, abs=0.5 * plain.bound)
 
 
 @pytest.mark.parametrize("seed", range(4))

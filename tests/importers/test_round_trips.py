@@ -52,13 +52,6 @@ SHARE_OF_SIGMA = 5.0  # of that box: where loops are near a singularity they are
 TIMES_HALVED = 10
 
 
-def known_defect(path: Path) -> Any:
-    """An example; that whose FreeCAD document, made from URDF, is read without its records is expected to fail until that is mended."""
-    reason = "the FreeCAD document of a platform that comes from URDF is not believed"
-    marks = [pytest.mark.xfail(strict=True, reason=reason)] if path.name == "stewart_platform" else []
-    return pytest.param(path, id=path.name, marks=marks)
-
-
 def random_loop(seed: int) -> Assembly:
     """A random chain of joints that move, closed by a joint of a random kind where its ends are at rest; a loop that can move."""
     rng = np.random.default_rng(seed)
@@ -177,7 +170,7 @@ def assert_told(first: Assembly, plan: AssemblyPlan, q: FloatArray, here: FloatA
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("example", [known_defect(path) for path in EXAMPLES])
+@pytest.mark.parametrize("example", EXAMPLES, ids=[path.name for path in EXAMPLES])
 def test_an_example_comes_back(example: Path, tmp_path: Path) -> None:
     plan = AssemblyPlan.load(example)
     first = Assembly.from_plan(plan, example / "parts")
