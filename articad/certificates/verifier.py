@@ -839,9 +839,8 @@ class Checker:
         parts = [np.stack(np.broadcast_arrays(*column), axis=1) for column in zip(*moved, strict=True)] if moved else nothing
         w, v, along, aside = (np.broadcast_to(part, (len(todo), *part.shape[1:])) for part in parts)
         turned = (np.abs(along).sum(2) + aside) * w.any(2)
-        tilted = np.linalg.norm(
-            cross(w[:, :, None], w[:, None]), axis=3
-        )  # a turn by d moves the end of an axis inside by 2 sin(d/2) times this
+        # A turn by d about one axis moves the end of another one by 2 sin(d/2) times the sine of the angle between both.
+        tilted = np.linalg.norm(cross(w[:, :, None], w[:, None]), axis=3)
         off = [
             np.abs((v + cross(w, centre)) @ across).max((1, 2)),
             np.abs(cross(w, axis)).max((1, 2)),

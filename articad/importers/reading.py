@@ -173,8 +173,9 @@ class Folder:
     def find(self, name: str) -> Path:
         """Return the file for a name: relative to the file or the root, `file://`, `package://name/...` or `model://name/...`.
 
-        A `package://` package is looked for in the folders from the file up to the root, in the root alone if it is not above the file, then in the folders of `ROS_PACKAGE_PATH` and
-        `AMENT_PREFIX_PATH`; the file has to lie in the root, or in the package that the environment names.
+        A `package://` package is looked for in the folders from the file up to the root, in the root alone if it is not above the file, then
+        in the folders of `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`; the file has to lie in the root, or in the package that the environment
+        names.
 
         Raises:
             ReadError: E_UNSAFE_PATH if it leads out; E_READ if there is no such file.
