@@ -11,6 +11,7 @@ from pathlib import Path
 from articad.kernels import sandbox
 from articad.processes import launcher
 from articad.simulation.loading import FILE_SIZE, MEMORY, Engine, answer_in, load, places
+from articad.simulation.loading import SECONDS as LOADING_SECONDS
 from articad.simulation.verdict import EngineOutcome
 
 SECONDS = 300.0
@@ -37,9 +38,9 @@ def try_out(
         rest: Rest values of joints by name [rad or m], for files that do not state them.
         opened: Joints that are not driven, because the engine or the file leaves their loop open; "*" for all.
         mimics: Leader, multiplier and offset of joints that follow others in the file; they are driven with their leader.
-        seconds: Time after which it is killed.
+        seconds: Time after which it is killed; the process that only loads the model gets the usual time if that is more.
     """
-    loading = load(engine, path, root=root)
+    loading = load(engine, path, root=root, seconds=max(seconds, LOADING_SECONDS))
     if not loading.loads:
         return EngineOutcome(engine, loading.version, loads=loading.loads, message=loading.message, late=loading.late)
     words = [

@@ -19,6 +19,7 @@ from articad.simulation.trial import try_out
 from articad.simulation.verdict import SimulationVerdict
 from tests.assemblies import four_bar
 from tests.obedience import assert_heals
+from tests.simulate.slow import take
 from tests.simulate.test_verdict import ARM, MODEL, TURN
 
 pytestmark = pytest.mark.engines
@@ -75,11 +76,19 @@ def test_a_model_that_does_not_load_loads_when_the_cause_that_the_audit_names_is
     assert_heals(finding, before, tried(model(tmp_path, arm=weighed)))
 
 
-def test_what_had_too_little_time_is_tried_with_more(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("process", "needs", "given"), [("articad.simulation.trial", 30.0, 20.0), ("articad.simulation.loading", 90.0, 20.0)]
+)
+def test_what_had_too_little_time_is_tried_with_more(
+    process: str, needs: float, given: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = model(tmp_path)
-    before = simulate_file(path, engines=("mujoco",), seconds=0.02).findings
+    take(monkeypatch, process, needs)
+    before = simulate_file(path, engines=("mujoco",), seconds=given).findings
     finding, _ = hinted(before, "W_SIM_NOT_TRIED", "with more `--seconds`")
-    assert_heals(finding, before, simulate_file(path, engines=("mujoco",)).findings)
+    after = simulate_file(path, engines=("mujoco",), seconds=3600.0).findings
+    assert_heals(finding, before, after)
+    assert not after.of("W_SIM_NOT_TRIED")
 
 
 @pytest.mark.parametrize(("code", "solref"), [("E_SIM_EXPLODES", HARD), ("E_SIM_UNSETTLED", "")])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from articad.simulation.standing import stands
 from articad.simulation.trial import try_out
 from articad.simulation.verdict import SimulationVerdict
 from tests.assemblies import four_bar
+from tests.simulate.slow import take
 from tests.test_commands import write_chest
 
 pytestmark = pytest.mark.engines
@@ -48,23 +50,24 @@ def test_a_loop_that_is_open_at_rest_and_a_file_that_does_not_load_are_errors(tm
     assert stands(assembly, path).codes == ("E_SIM_LOAD",)
 
 
-def test_what_does_not_finish_in_time_is_not_tried_which_is_told_and_no_error(tmp_path: Path) -> None:
+def test_what_does_not_finish_in_time_is_not_tried_which_is_told_and_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    take(monkeypatch, "articad.simulation.trial", 30.0)
     assembly = four_bar()
     bundle = write_mjcf(assembly)
     bundle.write(tmp_path)
 
-    (finding,) = findings = stands(assembly, tmp_path / bundle.main, seconds=0.02)
+    (finding,) = findings = stands(assembly, tmp_path / bundle.main, seconds=20.0)
 
     assert finding.code == "W_SIM_NOT_TRIED"
-    assert "0.02 s" in finding.message
+    assert "20 s" in finding.message
     assert findings.ok
-    late = try_out("mujoco", tmp_path / bundle.main, seconds=0.02)
+    late = try_out("mujoco", tmp_path / bundle.main, seconds=20.0)
     assert late.loads is None
     assert not SimulationVerdict("", (late,)).ok  # nothing was tried
 
 
 def test_a_build_that_could_not_be_tried_is_ok_and_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("articad.simulation.standing.try_out", lambda *words, **options: try_out(*words, **options | {"seconds": 0.02}))
+    take(monkeypatch, "articad.simulation.trial", math.inf)
     out = tmp_path / "out"
     assert cli.main(["build", str(write_chest(tmp_path / "chest")), "--out", str(out), "--no-pictures", "-q"]) == 0
 
