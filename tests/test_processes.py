@@ -29,6 +29,7 @@ CLASSES = {"ProcessPoolExecutor", "LocalCluster"}
 ALLOWED = {
     ("processes/launcher.py", "subprocess"): "the launcher",
     ("processes/child.py", "execve"): "the launcher's other end",
+    ("processes/child.py", "fork"): "a program, which this process watches",
     ("agents/provider.py", "fork"): "a bounded process for each call of a model",
     ("kernels/worker.py", "fork"): "the zygote, which forks a confined process for each part script",
 }
@@ -197,14 +198,28 @@ time.sleep(300)
 """
 
 
+# Programs below a program, one of which leaves the group: the kernel tells none of them that its parent has ended.
+PROGRAM = """
+import os
+from articad.processes import launcher
+code = "sleep 300 & echo $$ $!; setsid sh -c 'echo $$; sleep 300 & echo $!; wait' & (sh -c 'echo $$; sleep 300; true'; true)"
+with launcher.start(["/bin/sh", "-c", code]) as child:
+    words = [child.pid]
+    while len(words) < 6:
+        words += child.stdout.readline().split()
+    print(*map(int, words), flush=True)
+    child.finish()
+"""
+
+
 def _heeds_interrupts() -> None:
     """Undo what a shell does to its background jobs: they ignore SIGINT, and so would all that they start."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the kernel's signal for a parent's end is Linux's")
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT])
-@pytest.mark.parametrize("work", [ENGINE, SCRIPT], ids=["engines", "kernel"])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT, signal.SIGHUP])
+@pytest.mark.parametrize("work", [ENGINE, SCRIPT, PROGRAM], ids=["engines", "kernel", "programs"])
 def test_no_process_outlives_its_parent_and_no_folder_the_next_start(work: str, number: signal.Signals, tmp_path: Path) -> None:
     temporary = tmp_path / "temporary"
     temporary.mkdir()
@@ -224,6 +239,19 @@ def test_no_process_outlives_its_parent_and_no_folder_the_next_start(work: str, 
         assert gone([parent.pid, *children])
     subprocess.run([sys.executable, "-c", "from articad.processes import scratch; scratch.folder('x')"], env=environment, check=True)
     assert list(temporary.iterdir()) == []
+
+
+def test_a_program_ends_as_by_itself_and_is_alone_at_its_pipes() -> None:
+    """The process that watches it neither changes its end nor holds its pipes."""
+    for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV):
+        assert launcher.run(["/bin/sh", "-c", f"kill -{int(number)} $$"], limits=Limits(seconds=60)).code == -number
+    assert launcher.run(["/bin/sh", "-c", "exit 7"], limits=Limits(seconds=60)).code == 7
+    with launcher.start(["/bin/sh", "-c", "exec >&- 2>&-; read line; exit 5"], stdin=launcher.PIPE) as child:
+        assert child.stdout.read() == b""  # it has closed it, and is alive
+        assert not child.ended()
+        child.stdin.write(b"\n")
+        child.stdin.flush()
+        assert child.finish().code == 5
 
 
 def test_the_sweep_leaves_what_is_in_use_or_not_ours(tmp_path: Path) -> None:

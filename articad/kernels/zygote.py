@@ -173,14 +173,9 @@ class Zygote:
             with theirs:
                 process = self._spawn(theirs)
             self._process = process
-            ours.settimeout(START_SECONDS)
-            hello = json.loads(ours.recv(_ANSWER) or b'{"problem": "it ended before it was ready"}')
-            if not hello.get("ready"):
-                process.close()
-                raise _unavailable(str(hello.get("problem")))
-            ours.settimeout(None)
-        except (OSError, KernelUnavailableError) as error:
-            ready.set_exception(error if isinstance(error, KernelUnavailableError) else _unavailable(str(error)))
+            _greeted(ours, process)
+        except Exception as error:  # noqa: BLE001 - whoever waits for the socket must be told whatever happened
+            ready.set_exception(_unavailable(str(error)) if isinstance(error, OSError) else error)
             ours.close()
             return
         ready.set_result(ours)
@@ -200,6 +195,20 @@ class Zygote:
             command = sandbox.bubblewrap_command(command)
         nowhere = launcher.NOWHERE
         return launcher.start(command, environment=sandbox.ENVIRONMENT, folder="/", stdin=control.fileno(), stdout=nowhere, stderr=nowhere)
+
+
+def _greeted(control: socket.socket, process: launcher.Child) -> None:
+    """Wait until a worker says that it is ready.
+
+    Raises:
+        KernelUnavailableError: If it says why it is not; then it is closed.
+    """
+    control.settimeout(START_SECONDS)
+    hello = json.loads(control.recv(_ANSWER) or b'{"problem": "it ended before it was ready"}')
+    if not hello.get("ready"):
+        process.close()
+        raise _unavailable(str(hello.get("problem")))
+    control.settimeout(None)
 
 
 def _outcome(answer: dict[str, Any]) -> JobOutcome:

@@ -3,14 +3,18 @@
 ORDER is a JSON object:
 - `parent`: the process that started this one; when it ends, the kernel kills this one (Linux).
 - `limits`: soft and hard resource limits by their names in `resource`.
-- `module`: the module of articad to run, with WORDS as its arguments; or null: WORDS are a program to become.
+- `module`: the module of articad to run, with WORDS as its arguments; or null: WORDS are a program to run.
 - `environment`: the names of the variables that the program keeps. Python adds LC_CTYPE to an empty environment.
 
 `-I` keeps the working folder, PYTHONPATH and the user's own packages off the path. The imported articad is the one that contains this file. Only the standard library is used here.
+
+A program may start processes that the kernel does not kill with their parent. So on Linux this process stays beside it, kills all processes below itself when the
+parent ends or SIGTERM comes, and those that the program leaves behind, and ends as the program ends.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -18,31 +22,92 @@ import sys
 from typing import Any, Final
 
 _PR_SET_PDEATHSIG: Final = 1
+_PR_SET_CHILD_SUBREAPER: Final = 36
+_ROUNDS: Final = 100  # of looking for processes to kill: each may start others until it is killed
 
 
 def main() -> None:
     """Carry out the order."""
     order: dict[str, Any] = json.loads(sys.argv[1])
     words = sys.argv[2:]
-    _end_with(order["parent"])
-    _limit(order["limits"])
-    if order["module"] is None:
-        kept = {name: os.environ[name] for name in order["environment"]}
-        try:
-            os.execve(words[0], words, kept)  # noqa: S606 - the words are articad's own, and no shell reads them
-        except OSError as error:
-            sys.exit(f"{words[0]}: {error.strerror}")
-    _run(order["module"], words)
-
-
-def _end_with(parent: int) -> None:
-    """Ask the kernel to kill this process when its parent ends; exit now if the parent has already ended."""
+    if order["module"] is not None:
+        _end_with(order["parent"])
+        _limit(order["limits"])
+        _run(order["module"], words)
+        return
     if sys.platform == "linux":
-        import ctypes  # noqa: PLC0415 - other systems do not need it
+        _stay_beside_program(order["parent"])
+    _limit(order["limits"])
+    kept = {name: os.environ[name] for name in order["environment"]}
+    try:
+        os.execve(words[0], words, kept)  # noqa: S606 - the words are articad's own, and no shell reads them
+    except OSError as error:
+        sys.exit(f"{words[0]}: {error.strerror}")
 
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
+
+def _end_with(parent: int, number: int = signal.SIGKILL) -> None:
+    """Ask the kernel to send this process a signal when its parent ends; exit now if the parent has already ended."""
+    if sys.platform == "linux":
+        _prctl(_PR_SET_PDEATHSIG, int(number))
         if os.getppid() != parent:
             os._exit(1)
+
+
+def _stay_beside_program(parent: int) -> None:
+    """Fork; return in the new process, which becomes the program, and watch over it in this one, which does not return."""
+    watcher = os.getpid()
+    signal.signal(signal.SIGTERM, lambda *_: _end_all())
+    _prctl(_PR_SET_CHILD_SUBREAPER, 1)  # what a process below leaves behind becomes a child of this process
+    _end_with(parent, signal.SIGTERM)
+    program = os.fork()
+    if program == 0:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        _end_with(watcher)
+        return
+    for number in map(int, os.listdir("/proc/self/fd")):  # noqa: PTH208 - a start without pathlib is faster
+        with contextlib.suppress(OSError):  # the list itself
+            os.close(number)  # whoever waits for the end of a pipe of the program waits for the program alone
+    while True:
+        ended, status = os.wait()
+        if ended == program:
+            _kill_all_below()
+            _end_as(os.waitstatus_to_exitcode(status))
+
+
+def _end_all() -> None:
+    """Kill the processes below this one, then this one and its group."""
+    _kill_all_below()
+    os.killpg(0, signal.SIGKILL)
+
+
+def _kill_all_below() -> None:
+    """Kill the processes below this one, in whatever group they are."""
+    with contextlib.suppress(OSError):  # the system lists no children
+        for _ in range(_ROUNDS):
+            with open(f"/proc/self/task/{os.getpid()}/children", encoding="ascii") as listed:  # noqa: PTH123 - a start without pathlib is faster
+                below = [int(word) for word in listed.read().split()]
+            if not below:
+                break
+            for child in below:
+                os.kill(child, signal.SIGKILL)
+            for child in below:
+                os.waitpid(child, 0)  # its own children are now children of this process
+
+
+def _end_as(code: int) -> None:
+    """End this process with an exit code, or by a signal if the code is negative."""
+    if code < 0:
+        with contextlib.suppress(OSError):  # SIGKILL and SIGSTOP cannot be set
+            signal.signal(-code, signal.SIG_DFL)
+        _limit({"CORE": 0})
+        os.kill(os.getpid(), -code)
+    os._exit(code if code >= 0 else 128 - code)
+
+
+def _prctl(what: int, value: int) -> None:
+    import ctypes  # noqa: PLC0415 - other systems do not need it
+
+    ctypes.CDLL(None).prctl(what, value, 0, 0, 0)
 
 
 def _limit(limits: dict[str, int]) -> None:

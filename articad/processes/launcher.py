@@ -4,7 +4,7 @@ A child starts with `articad/processes/child.py` under `python -I`. It
 - imports nothing from the working folder, PYTHONPATH or the user's own packages;
 - works in a private, empty folder, which is removed afterwards and is its TMPDIR;
 - gets the environment variables that it needs, and keys only where it calls a model;
-- leads a process group of its own, which is killed as one;
+- leads a process group of its own, which is killed as one, with all processes below a program (Linux);
 - is killed by the kernel when the thread that started it ends (Linux);
 - has bounded memory, processor time, wall time, output and file sizes.
 
@@ -54,7 +54,7 @@ _BASIC: Final = ("PATH", "LANG", "LC_", "TZ", "LD_LIBRARY_PATH", "DYLD_LIBRARY_P
 _SAFE_PATH: Final = "PYTHONSAFEPATH"  # `-P` for all Python processes that inherit it
 _CHILD: Final = str(Path(__file__).with_name("child.py"))
 _LOOK_S: Final = 0.2  # between two checks whether a child that closed no pipe has ended
-_END_S: Final = 5.0  # for pipes to close after all processes of a group are killed
+_END_S: Final = 5.0  # for the watcher of a program to kill it, and for pipes to close after all processes of a group are killed
 
 
 @dataclass(frozen=True)
@@ -113,8 +113,9 @@ class Ended:
 class Child:
     """A process that was started here; leaving its context kills its group and removes its folder."""
 
-    def __init__(self, process: subprocess.Popen[bytes], folder: Any, limits: Limits) -> None:
+    def __init__(self, process: subprocess.Popen[bytes], folder: Any, limits: Limits, *, watched: bool = False) -> None:
         self._process, self._folder, self._limits = process, folder, limits
+        self._watched = watched  # by a process of child.py, which kills what has left the group too
         self._started = time.monotonic()
         self._lock = threading.Lock()
         self._held: list[IO[bytes]] = []  # pipes that a process outside of its group keeps open, and a thread reads
@@ -159,10 +160,13 @@ class Child:
         return True
 
     def kill(self) -> None:
-        """Kill every process of its group."""
+        """Kill every process of its group, and of a program all processes below it."""
         with self._lock:
             if self._process.returncode is not None:
                 return
+            if self._watched and not self.ended():
+                self._process.terminate()
+                self.wait(_END_S)
             if hasattr(os, "killpg"):
                 with contextlib.suppress(ProcessLookupError, PermissionError):  # macOS refuses for a group of zombies
                     os.killpg(self.pid, signal.SIGKILL)
@@ -257,7 +261,7 @@ def start(
         if own is not None:
             own.cleanup()
         raise
-    return Child(process, own, limits)
+    return Child(process, own, limits, watched=module is None and sys.platform == "linux")
 
 
 def run(

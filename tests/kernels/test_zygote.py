@@ -115,6 +115,29 @@ def test_a_fork_of_the_owner_starts_its_own(kernel: Build123dKernel, brief: dict
     assert kernel.pid == owned
 
 
+@pytest.mark.parametrize("error", [ValueError("no"), MemoryError(), OSError("no processes left")])
+def test_whoever_waits_for_the_worker_is_told_whatever_kept_it_from_starting(
+    error: Exception, brief: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def spawn(*_: Any) -> Any:
+        raise error
+
+    monkeypatch.setattr(zygote.Zygote, "_spawn", spawn)
+    told: list[Exception] = []
+
+    def build() -> None:
+        try:
+            kernel_of_its_own().build(CUBE, brief)
+        except Exception as raised:  # noqa: BLE001 - it is looked at below
+            told.append(raised)
+
+    waiting = threading.Thread(target=build, daemon=True)
+    waiting.start()
+    waiting.join(60)
+    assert len(told) == 1
+    assert isinstance(told[0], KernelUnavailableError if isinstance(error, OSError) else type(error))
+
+
 def test_kernels_share_a_process_until_the_last_one_closes(brief: dict[str, Any]) -> None:
     layers = ("landlock",)  # which no other test's kernel shares
     first, second = Build123dKernel(layers=layers), Build123dKernel(layers=layers, timeout=9.0)
