@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from typing import Any
 
 from lxml import etree
 
 from articad.connectors.se3 import SE3
+from articad.texts import escaped
 
 DUST_DIGITS = 12  # a billionth of a mm
 DUST = 0.5 * 10.0**-DUST_DIGITS
@@ -38,6 +40,11 @@ def tidy(values: Iterable[float], scale: float = 1.0) -> list[float]:
         dusty = abs(value) < DUST * scale or abs(value - rounded) <= 2e-15 * max(scale, abs(value))
         found.append((rounded if dusty else value) + 0.0)
     return found
+
+
+def comment(text: str) -> Any:
+    """Return a comment with any text: names of joints and reasons of waivers are anybody's, and a comment may hold no two hyphens in a row."""
+    return etree.Comment(f" {re.sub('-(?=-)', '- ', escaped(text))} ")
 
 
 def rpy(T: SE3) -> tuple[float, float, float]:

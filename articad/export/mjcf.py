@@ -31,7 +31,7 @@ from articad.export.lowering import (
     lower,
     metres,
 )
-from articad.export.markup import child, document, number, numbers, rgba, tidy, wxyz
+from articad.export.markup import child, comment, document, number, numbers, rgba, tidy, wxyz
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mjcf_again import Again
@@ -407,7 +407,7 @@ class _Writer:
         if pairs:
             contact = child(root, "contact")
             for a, b in pairs:
-                contact.append(etree.Comment(f" {reasons[a, b]} ".replace("--", "- -")))
+                contact.append(comment(reasons[a, b]))
                 child(contact, "exclude", {"body1": links[a].name, "body2": links[b].name})
 
     def _joined(self) -> list[Pair]:
@@ -457,7 +457,7 @@ class _Writer:
         else:
             ghost = child(near, "body", {"name": loop.carriers[-1]} | _placement(loop.T_parent_joint))
             why = f"Closes a loop by joint {loop.joint.name}: half of the mass of {loop.joint.child} is here, welded to the half on its other joint."
-            ghost.append(etree.Comment(f" {why} ".replace("--", "- -")))
+            ghost.append(comment(why))
             _inertial(ghost, self.ghosts[loop.name])
             for freedom in loop.freedoms:
                 child(ghost, "joint", _joint(freedom, foreign=self.assembly.foreign))

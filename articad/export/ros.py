@@ -11,7 +11,7 @@ from lxml import etree
 from articad.errors import ExportError
 from articad.export.hulls import Pair
 from articad.export.lowering import AxisMotion, LoweredModel
-from articad.export.markup import child, document, number
+from articad.export.markup import child, comment, document, number
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -79,7 +79,7 @@ def srdf(name: str, links: Mapping[str, str], pairs: Iterable[tuple[str, Pair, s
         a, b = (links[part] for part in pair)
         if frozenset((a, b)) not in known:
             known.add(frozenset((a, b)))
-            root.append(etree.Comment(f" {claim} ".replace("--", "- -")))
+            root.append(comment(claim))
             child(root, "disable_collisions", {"link1": a, "link2": b, "reason": reason})
     return document(root)
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,8 +10,9 @@ from hypothesis import strategies as st
 from lxml import etree
 from scipy.spatial.transform import Rotation
 
+import articad
 from articad.connectors.se3 import SE3
-from articad.export.markup import child, document, number, rgba, rpy, wxyz
+from articad.export.markup import child, comment, document, number, rgba, rpy, wxyz
 from articad.export.names import MAX_LENGTH, Names, valid_name
 
 angles = st.floats(-math.pi, math.pi)
@@ -57,6 +59,28 @@ def test_hostile_text_stays_text() -> None:
     assert [element.tag for element in read.iter()] == ["robot", "text"]
     assert read[0].get("data") == '"/><evil/>&<![CDATA['
     assert read[0].text == "]]></text><evil/>"
+
+
+@given(st.text(st.one_of(st.sampled_from("-->!<\n]"), st.characters())))
+def test_any_text_is_a_comment_and_only_that(text: str) -> None:
+    root = etree.Element("robot")
+    root.append(comment(text))
+    child(root, "after")
+    first, after = etree.fromstring(document(root))
+
+    assert first.tag is etree.Comment
+    assert after.tag == "after"
+
+
+@pytest.mark.parametrize("text", ["---", "a -- b", "<!----->", "-", "--"])
+def test_a_comment_keeps_its_characters_but_for_spaces(text: str) -> None:
+    assert comment(text).text.replace(" ", "") == text.replace(" ", "")
+
+
+def test_comments_are_made_in_one_place() -> None:
+    package = Path(articad.__file__).parent
+    made = {path.name for path in package.rglob("*.py") if "etree.Comment(" in path.read_text(encoding="utf-8")}
+    assert made == {"markup.py"}
 
 
 @pytest.mark.parametrize(
