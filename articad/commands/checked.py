@@ -57,7 +57,9 @@ class Check:
     @property
     def failure(self) -> str:
         """How it ended without a report."""
-        return "it took too long" if self._ended and self._ended.late else self._ended.last_line if self._ended else "it did not start"
+        if self._ended is None:
+            return "it did not start"
+        return "it took too long" if self._ended.late else self._ended.last_line
 
 
 def main(order: str) -> None:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from articad.commands.command import argument, command
 from articad.commands.options import FORCE, SANDBOX
 from articad.commands.steps import build_cache, sandbox_level
-from articad.files import SCRIPT_BYTES, read_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -81,6 +80,7 @@ def _script(resolved: ResolvedPlan, name: str, file: Path, folder: Path) -> byte
         ReadError: If there is no such part, it is derived, or the script cannot be read.
     """
     from articad.errors import ReadError, did_you_mean
+    from articad.kernels.parts import read_script
 
     target = resolved.parts.get(name)
     if target is None:
@@ -89,10 +89,7 @@ def _script(resolved: ResolvedPlan, name: str, file: Path, folder: Path) -> byte
     if target.derivation is not None:
         message = f"{name!r} is derived: it needs no script. Build {target.derivation.source!r}, and it follows."
         raise ReadError(message, path=str(file), where=name)
-    try:
-        return read_file(file, SCRIPT_BYTES, root=folder)
-    except OSError as error:
-        raise ReadError.at(file, f"{file} cannot be read: {error.strerror}.", "Write the script there.") from None
+    return read_script(file, folder)
 
 
 def _reported(name: str, outcome: RealisedPart | KernelError, terminal: Terminal) -> Report:

@@ -77,7 +77,7 @@ def find_scripts(folder: Path, resolved: ResolvedPlan, kernel: str) -> dict[str,
             continue
         path = script_file(folder, name, kernel)
         if _is_there(path):
-            scripts[name] = _script(path, folder.parent)
+            scripts[name] = read_script(path, folder.parent)
         else:
             missing.append(_script_missing(name, path, present))
     if missing:
@@ -85,8 +85,12 @@ def find_scripts(folder: Path, resolved: ResolvedPlan, kernel: str) -> dict[str,
     return scripts
 
 
-def _script(path: Path, root: Path) -> bytes:
+def read_script(path: Path, root: Path) -> bytes:
     """Return a part's script.
+
+    Args:
+        path: Of the script.
+        root: No link on the way from here is followed.
 
     Raises:
         ReadError: If it is not a file, is too large, or is a link.

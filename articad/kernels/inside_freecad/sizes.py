@@ -88,4 +88,6 @@ def _having(
     straight = [(row[0], row[1], row[2]) for row in edges if abs(row[3] - value) < SAME]
     if radius or diameter:
         return round_ones
-    return straight if edge or not round_ones else [] if straight else round_ones
+    if edge or not round_ones:
+        return straight
+    return [] if straight else round_ones
