@@ -23,6 +23,7 @@ _GROUPS_AT_ONCE: Final = 1 << 10  # pairs of groups of triangles
 _BOXES_AT_ONCE: Final = 1 << 21  # pairs of boxes
 _FLAT: Final = 1e-12  # of squared lengths: twice the area of a triangle that is seen edge-on
 _EDGE: Final = 1e-9  # of coordinates on edges and in triangles
+_SLIVER_MM: Final = 1e-9  # width of a triangle that is seen edge-on
 _RAYS: Final = 4000  # at which material is counted
 _BESIDE: Final = (0.5137, 0.4721)  # place of a ray in its cell: not in the middle, where edges of regular shapes are
 
@@ -78,9 +79,17 @@ class Outline:
         """Lower and upper corner of the box about all, `(2,)` each."""
         return self.low.min(axis=0), self.high.max(axis=0)
 
-    def inside(self, low: FloatArray, high: FloatArray) -> IntArray:
-        """Return the triangles whose boxes meet a box, neighbours after each other, `(k,)`."""
-        found = np.flatnonzero(((self.low <= high) & (self.high >= low)).all(axis=1))
+    @cached_property
+    def wide(self) -> BoolArray:
+        """Which triangles are not seen edge-on, `(T,)`."""
+        sides = np.roll(self.flat, -1, axis=1) - self.flat
+        longest = np.sqrt((sides * sides).sum(axis=2).max(axis=1, initial=0.0))
+        return np.asarray(np.abs(_cross(sides[:, 0], sides[:, 1])) > _SLIVER_MM * longest)
+
+    def inside(self, low: FloatArray, high: FloatArray, *, wide: bool) -> IntArray:
+        """Return the triangles whose boxes meet a box, neighbours after each other, `(k,)`; with `wide` those that are not seen edge-on."""
+        meet = ((self.low <= high) & (self.high >= low)).all(axis=1)
+        found = np.flatnonzero(meet & self.wide if wide else meet)
         middle = (self.low[found] + self.high[found]) / 2
         cell = np.clip((middle - low) / np.maximum(high - low, 1e-12) * 1023, 0, 1023).astype(np.int64)
         return np.asarray(found[np.argsort(_interleaved(cell[:, 0]) | (_interleaved(cell[:, 1]) << 1), kind="stable")])
@@ -97,12 +106,22 @@ def first_contacts(a: Outline, b: Outline) -> tuple[float, float]:
     """Return how far a moves before it meets b: forwards along the direction of both outlines, and backwards [mm].
 
     Infinity if they never meet; zero both ways if they meet where they are.
+
+    Solids share volume on rays along the direction, and almost no ray meets a triangle that is seen edge-on. So such walls decide nothing
+    about a way out. Solids that share volume where they are meet both ways; only then walls are searched for where they cross others.
     """
     low, high = np.maximum(a.box[0], b.box[0]), np.minimum(a.box[1], b.box[1])
-    forwards = backwards = np.inf
     if (low > high).any():
-        return forwards, backwards
-    rows, columns = a.inside(low, high), b.inside(low, high)
+        return np.inf, np.inf
+    forwards, backwards = _nearest(a, b, a.inside(low, high, wide=True), b.inside(low, high, wide=True), (np.inf, np.inf))
+    if forwards > 0 and np.isfinite(forwards + backwards):
+        return _nearest(a, b, a.inside(low, high, wide=False), b.inside(low, high, wide=False), (forwards, backwards))
+    return forwards, backwards
+
+
+def _nearest(a: Outline, b: Outline, rows: IntArray, columns: IntArray, known: tuple[float, float]) -> tuple[float, float]:
+    """Return the least travels of some triangles of a to some of b, forwards and backwards, that are less than those known."""
+    forwards, backwards = known
     groups, near, far = _meeting(a, b, rows, columns)
     # those that may be next to each other first: most others are then farther than what is known
     order = np.argsort(np.maximum(near, -far), kind="stable")
@@ -114,6 +133,8 @@ def first_contacts(a: Outline, b: Outline) -> tuple[float, float]:
         i, j = i[decides], j[decides]
         for at in range(0, len(i), _AT_ONCE):
             p, q = i[at : at + _AT_ONCE], j[at : at + _AT_ONCE]
+            over = _overlapping(a.flat[p], b.flat[q])
+            p, q = p[over], q[over]
             travel = _travels(a.flat[p], a.height[p], b.flat[q], b.height[q])
             least, most = np.fmin.reduce(travel, axis=1, initial=np.inf), np.fmax.reduce(travel, axis=1, initial=-np.inf)
             if bool(((least <= 0) & (most >= 0)).any()):
@@ -160,6 +181,18 @@ def _expanded(a: Outline, b: Outline, rows: IntArray, columns: IntArray, groups:
     i, j = rows[i[kept]], columns[j[kept]]
     meet = ((a.low[i] <= b.high[j]) & (b.low[j] <= a.high[i])).all(axis=1)
     return i[meet], j[meet]
+
+
+def _overlapping(p: FloatArray, q: FloatArray) -> BoolArray:
+    """Return which pairs of triangles `(K, 3, 2)` no side of either separates, `(K,)`; a pair that is apart by rounding only may be among them."""
+    e, g = np.roll(p, -1, axis=1) - p, np.roll(q, -1, axis=1) - q
+    slack = 4 * _EDGE * ((e * e).sum(axis=(1, 2)) + (g * g).sum(axis=(1, 2)))
+    apart = q[:, None] - p[:, :, None]
+    # twice the areas of a side with each corner of the other triangle: negative where the corner is inside this side
+    beyond_p = _cross(apart, e[:, :, None]) * np.sign(_cross(e[:, 0], e[:, 1]))[:, None, None]
+    beyond_q = -_cross(apart, g[:, None]) * np.sign(_cross(g[:, 0], g[:, 1]))[:, None, None]
+    farthest = np.maximum(beyond_p.min(axis=2).max(axis=1), beyond_q.min(axis=1).max(axis=1))
+    return np.asarray(farthest <= slack)
 
 
 def _travels(p: FloatArray, hp: FloatArray, q: FloatArray, hq: FloatArray) -> FloatArray:

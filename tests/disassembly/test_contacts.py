@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from articad.connectors import SE3
-from articad.disassembly.contacts import Outline, first_contacts, material_met
+from articad.disassembly.contacts import Outline, _travels, first_contacts, material_met
 from articad.geometry import TriMesh
 from articad.geometry.shapes import box, cylinder, tube
 from articad.interference.body import body_of
@@ -76,3 +76,26 @@ def test_the_material_that_meets_a_block_is_what_lies_below_its_top(seed: int) -
     assert material_met(moving, staying) == pytest.approx(expected, rel=0.02, abs=2.0)
     backwards = [Outline.of(corners(mesh, turned @ at), -way).reversed for mesh, at in ((shape, T), (box(6, 5, 4), block))]
     assert material_met(*backwards) == pytest.approx(expected, rel=0.02, abs=2.0)
+
+
+def of_every_two(a: Outline, b: Outline) -> tuple[float, float]:
+    """Return the travels from every triangle of a to every one of b, walls among them."""
+    i, j = (index.ravel() for index in np.indices((len(a.flat), len(b.flat))))
+    travel = _travels(a.flat[i], a.height[i], b.flat[j], b.height[j])
+    travel = travel[np.isfinite(travel).any(axis=1)]
+    least, most = np.nanmin(travel, axis=1, initial=np.inf), np.nanmax(travel, axis=1, initial=-np.inf)
+    if ((least <= 0) & (most >= 0)).any():
+        return 0.0, 0.0
+    return float(least[least > 0].min(initial=np.inf)), -float(most[most < 0].max(initial=-np.inf))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_walls_that_are_seen_edge_on_decide_nothing_about_solids(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    a, b = (SHAPES[k] for k in rng.integers(0, len(SHAPES), 2))
+    turn = random_rotation(rng) if seed % 2 else SE3.identity()  # edge-on but for rounding, and exactly
+    T_b = SE3.from_translation(rng.integers(-12, 13, 3) / 2)
+    way = turn.rotation[:, seed % 3]
+    both = [Outline.of(corners(mesh, turn @ T), way) for mesh, T in ((a, SE3.identity()), (b, T_b))]
+    assert not both[0].wide.all()
+    assert first_contacts(*both) == pytest.approx(of_every_two(*both), abs=1e-9)
