@@ -1,4 +1,7 @@
-"""Writes the pages of docs/reference that are tables of the code: findings, losses and the command line. `--check` only compares."""
+"""Writes the pages of docs/reference that are tables of the code: findings, losses and the command line, and that of stored orders of assembly.
+
+`--check` only compares.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,8 @@ import textwrap
 from itertools import groupby
 from pathlib import Path
 from typing import get_args
+
+from orders import stored_page as orders
 
 import articad.commands
 import articad.kernels
@@ -245,7 +250,14 @@ def _cell(text: str) -> str:
     return re.sub(r"<\w+>", r"`\g<0>`", text % {} if "%%" in text else text).replace("|", "\\|")
 
 
-PAGES = {"findings.md": findings, "losses.md": losses, "formats.md": all_formats, "cli.md": commands, "freecad-kernel.md": freecad_kernel}
+PAGES = {
+    "findings.md": findings,
+    "losses.md": losses,
+    "formats.md": all_formats,
+    "cli.md": commands,
+    "freecad-kernel.md": freecad_kernel,
+    "orders.md": orders,
+}
 
 
 def main(arguments: list[str]) -> int:

@@ -1,0 +1,285 @@
+"""Finds orders of assembly of the examples, the recorded runs and the hard tasks' references, samples their paths again, and writes the page.
+
+    python scripts/orders.py                     # all that are new, or were judged by earlier programs
+    python scripts/orders.py four_bar task:oldham_offset
+    python scripts/orders.py --page              # only write the page, from docs/reference/orders.json
+
+Results are kept in docs/reference/orders.json, each with a digest of the product and of the programs that judged it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+import articad
+from articad.agents.pipeline import replay
+from articad.assembly import Assembly
+from articad.connectors.se3 import SE3
+from articad.disassembly.poses import poses_at
+from articad.disassembly.steps import AssemblyOrder, Blocked
+from articad.disassembly.ways import Ways
+from articad.interference.body import body_of
+from articad.interference.overlap import overlap
+from articad.runs.record import assembly_of
+from articad_bench.reference import reference_folder
+from articad_bench.task import tasks_in
+
+ROOT: Final = Path(__file__).resolve().parent.parent
+STORED: Final = ROOT / "docs" / "reference" / "orders.json"
+PAGE: Final = STORED.with_suffix(".md")
+SCHEMA: Final = "articad.orders/1"
+PLACES: Final = 60  # on each move of a path
+JUDGES: Final = ("disassembly", "interference")  # packages that decide an order
+
+SETS: Final = {"": "Examples", "run": "Recorded runs", "task": "References of hard tasks"}
+
+
+class Product(NamedTuple):
+    """What is put together: its key such as `task:oldham_offset`, its folder, and whether that is a recording."""
+
+    key: str
+    folder: Path
+    recorded: bool
+
+    @property
+    def digest(self) -> str:
+        """Of the files that make the product."""
+        found = hashlib.sha256()
+        for file in sorted(file for file in self.folder.rglob("*") if file.suffix in {".json", ".py"}):
+            found.update(f"{file.relative_to(self.folder)}\n".encode() + file.read_bytes())
+        return found.hexdigest()[:12]
+
+
+def products() -> list[Product]:
+    """Return the examples, the recorded runs and the references of the hard tasks."""
+    found = []
+    for folder in sorted(path for path in (ROOT / "examples").iterdir() if path.is_dir()):
+        recorded = not (folder / "plan.json").is_file()
+        found.append(Product(folder.name, folder / "recording" if recorded else folder, recorded))
+    recordings = sorted(file.parent for file in (ROOT / "tests" / "recordings").rglob("request.json"))
+    found += [Product(f"run:{folder.name}", folder, recorded=True) for folder in recordings]
+    found += [Product(f"task:{task.name}", reference_folder(folder, task), recorded=False) for folder, task in tasks_in(kind="hard")]
+    return found
+
+
+def programs() -> str:
+    """Return a digest of the programs that decide an order."""
+    found = hashlib.sha256()
+    folder = Path(str(articad.__file__)).parent
+    for file in sorted(file for package in JUDGES for file in (folder / package).glob("*.py")):
+        found.update(f"{file.relative_to(folder)}\n".encode() + file.read_bytes())
+    return found.hexdigest()[:12]
+
+
+def built(product: Product) -> Assembly:
+    """Return the assembly of a product; a recorded run is made again from its answers."""
+    if not product.recorded:
+        return articad.read(product.folder).product()
+    with tempfile.TemporaryDirectory() as scratch:
+        made = replay(product.folder, out=Path(scratch) / "run")
+        with made.run:
+            return assembly_of(made.run).product()
+
+
+def judged(product: Product) -> dict[str, Any]:
+    """Return the row of a product."""
+    assembly = built(product)
+    assembly.scene()
+    begun = time.process_time()
+    order = assembly.assembly_order()
+    seconds = time.process_time() - begun
+    return {
+        "product": product.digest,
+        "programs": programs(),
+        "parts": len(assembly.parts),
+        "steps": len(order.steps),
+        "seconds": round(seconds, 1),
+        "permitted": [[a, b, how] for step in order.steps for a, b, how in step.permitted],
+        "two_moves": sum(len(step.moves) > 1 for step in order.steps),
+        "elsewhere": sum(bool(step.at) for step in order.steps),
+        "blocked": [_blocked(each) for each in order.blocked],
+        "left_out": list(order.left_out),
+        "sampled": sampled(assembly, order),
+    }
+
+
+def _blocked(blocked: Blocked) -> dict[str, Any]:
+    best: dict[str, Any] = {}
+    for row in blocked.stops:
+        best.setdefault(row.part, [round(row.travel_mm, 2), row.by])
+    return {"parts": list(blocked.parts), "best": best}
+
+
+def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
+    """Return how many places of paths were examined by Booleans of the solids, and by how much the worst is deeper than allowed [mm]."""
+    scene, places, pairs, worst = assembly.scene(), 0, 0, -np.inf
+    for step in order.steps:
+        if not step.moves:
+            continue
+        poses = poses_at(assembly.mechanism, step.at)
+        ways, permitted = Ways(scene, poses), {frozenset(pair[:2]) for pair in step.permitted}
+        boxes = {name: np.array([(p := ways.points(name)).min(axis=0), p.max(axis=0)]) for name in (*step.parts, *step.onto)}
+        beyond = np.zeros(3)
+        for move in reversed(step.moves):  # out again
+            for share in np.linspace(0, 1, PLACES):
+                offset = beyond - share * move.length_mm * np.array(move.direction)
+                places += 1
+                for part in step.parts:
+                    for other in step.onto:
+                        near = (boxes[part][0] + offset <= boxes[other][1]).all() and (boxes[part][1] + offset >= boxes[other][0]).all()
+                        if not near or frozenset((part, other)) in permitted:
+                            continue
+                        pairs += 1
+                        T = poses[other].inverse() @ SE3.from_translation(offset) @ poses[part]
+                        found = overlap(body_of(scene.meshes[other]), body_of(scene.meshes[part]), T)
+                        worst = max(worst, found.depth - ways.depth(part, other))
+            beyond = beyond - move.length_mm * np.array(move.direction)
+    return {"places": places, "pairs": pairs, "worst_mm": None if np.isinf(worst) else round(float(worst), 6)}
+
+
+LOOKED: Final[Mapping[str, str]] = {
+    "metronome": "The case is one hollow piece around its nut and its barrel.",
+    "scissor_lift": "Each frame is one piece of two arms and their cross rods, and the rods lie in closed eyes of the other frames, inside its own two arms.",
+    "slider_crank": "The rod's eye is one closed piece about the crank pin, and the piston stays in its cylinder at every angle of the crank, so that the eye "
+    "never gets past the pin.",
+    "task:cardan_shaft": "Each cross is one piece, and its four journals lie in closed eyes of the two forks; a workshop makes the bearings as cups.",
+    "task:differential_axle": "The cage is one closed piece with the pin of the spider gears, between side gears that are one piece with axle and wheel.",
+    "task:engine_inline_three": "The crankshaft is one piece, and each rod has a closed eye about a crank pin between two cheeks; a workshop splits the eye.",
+    "task:engine_radial": "Each rod comes off its pin to the front only, and is on a pin of its piston, which leaves its closed cylinder along that cylinder only.",
+    "task:jack_scissor": "The screw turns on a neck in the bore of the trunnion, between its thread and its collar, which are wider; all is one piece.",
+    "task:orrery_three": "The post is one piece with the base and with the sun at its top, which is wider than the eyes of the planets' arms on the post.",
+}
+"""What was seen on the picture of each product that no order puts together."""
+
+ABOUT: Final = """\
+# Orders of assembly
+
+<!-- Written by `python scripts/orders.py` from orders.json; run that again. -->
+
+`articad order` for every example, every recorded run, and the reference of every hard task of the benchmark. [Can it be built?](../how-to/can-it-be-built.md)
+explains what is proven.
+
+- **seconds**: processor time of the search, without the build of the parts.
+- **proven**: every step's path is proven. *n by force*: so many pairs of parts are joined as the plan states (snap, press, circlip, bought as one).
+- **sampled**: every path was examined again with manifold3d: Booleans of the solids at 60 places of each move, for every moving and every placed part
+  whose boxes meet there. The number is by how much the deepest overlap is deeper than the joint of the two parts allows: negative means clear of that.
+- What no order puts together is named below, with what was seen on its picture.
+"""
+
+
+def page(stored: Mapping[str, Any]) -> str:
+    """Return the page of stored results."""
+    rows: Mapping[str, Any] = stored["rows"]
+    newest = sum(row["programs"] == stored["programs"] for row in rows.values())
+    solved = [row for row in rows.values() if _solved(row)]
+    slowest = max(rows, key=lambda key: rows[key]["seconds"])
+    places, pairs = (sum(row["sampled"][key] for row in rows.values()) for key in ("places", "pairs"))
+    told = (
+        f"{len(rows)} of {len(stored['planned'])} products were examined, {newest} of them by the newest programs: {len(solved)} have an order, {len(rows) - len(solved)} have parts that "
+        f"block each other. The search of `{slowest}` took longest: {rows[slowest]['seconds']:g} s for {rows[slowest]['parts']} parts. "
+        f"{places} places of paths were sampled, with {pairs} Booleans."
+    )
+    lines = [ABOUT, told]
+    for prefix, title in SETS.items():
+        mine = {key: row for key, row in rows.items() if key.rpartition(":")[0] == prefix}
+        lines += ["", f"## {title}", "", "| product | parts | steps | seconds | verdict | sampled, mm |", "|---|---|---|---|---|---|"]
+        for key, row in sorted(mine.items()):
+            old = "" if row["programs"] == stored["programs"] else " (earlier programs)"
+            worst = row["sampled"]["worst_mm"]
+            name = key.rpartition(":")[2]
+            lines.append(
+                f"| `{name}` | {row['parts']} | {row['steps']} | {row['seconds']:g} | {_verdict(row)}{old} | {'' if worst is None else f'{worst:.2f}'} |"
+            )
+    unknown = [f"`{key}`" for key in stored["planned"] if key not in rows]
+    if unknown:
+        lines += ["", f"Not examined yet: {', '.join(unknown)}."]
+    lines += ["", "## What blocks", ""]
+    for key, row in sorted(rows.items()):
+        for blocked in row["blocked"]:
+            ways = "; ".join(f"`{part}` {travel:.3g} mm to `{by}`" for part, (travel, by) in blocked["best"].items())
+            lines += [f"- **`{key.rpartition(':')[2]}`**: {LOOKED.get(key, 'Not looked at yet.')} Farthest ways: {ways}."]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _solved(row: Mapping[str, Any]) -> bool:
+    return not row["blocked"] and not row["left_out"]
+
+
+def _verdict(row: Mapping[str, Any]) -> str:
+    if row["left_out"]:
+        return f"without valid solid: {', '.join(row['left_out'])}"
+    if row["blocked"]:
+        return f"blocked: {sum(len(blocked['parts']) for blocked in row['blocked'])} parts"
+    told = ["proven"]
+    if row["permitted"]:
+        told.append(f"{len(row['permitted'])} by force")
+    if row["two_moves"]:
+        told.append(f"{row['two_moves']} in two moves")
+    if row["elsewhere"]:
+        told.append(f"{row['elsewhere']} at another pose")
+    return ", ".join(told)
+
+
+def stored_results() -> dict[str, Any]:
+    """Return what is stored."""
+    return (
+        json.loads(STORED.read_text(encoding="utf-8"))
+        if STORED.is_file()
+        else {"schema": SCHEMA, "programs": programs(), "planned": [], "rows": {}}
+    )
+
+
+def stored_page() -> str:
+    """Return the page of the stored results, for a check that it is current."""
+    return page(stored_results())
+
+
+def write(stored: Mapping[str, Any]) -> None:
+    """Write results and page."""
+    rows = {key: stored["rows"][key] for key in sorted(stored["rows"])}
+    body = ",\n".join(f"  {json.dumps(key)}: {json.dumps(row)}" for key, row in rows.items())  # a product a line
+    head = f'{{\n "schema": "{SCHEMA}",\n "programs": "{stored["programs"]}",\n "planned": {json.dumps(stored["planned"])},\n "rows": {{\n'
+    STORED.write_text(f"{head}{body}\n }}\n}}\n", encoding="utf-8")
+    PAGE.write_text(page(stored), encoding="utf-8")
+
+
+def main(arguments: list[str]) -> int:
+    """Judge products, and write results and page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "names", nargs="*", help="products, such as four_bar, run:toy or task:oldham_offset; all whose results are old by default"
+    )
+    parser.add_argument("--page", action="store_true", help="judge nothing; write the page of what is stored")
+    options = parser.parse_args(arguments)
+    stored = stored_results()
+    found = {product.key: product for product in products()}
+    unknown = [name for name in options.names if name not in found]
+    if unknown:
+        print(f"There is no {', '.join(unknown)}. There are {', '.join(found)}.", file=sys.stderr)
+        return 2
+    stored["rows"] = {key: row for key, row in stored["rows"].items() if key in found}
+    stored |= {"programs": programs(), "planned": list(found)}
+    for key, product in found.items():
+        row = stored["rows"].get(key, {})
+        old = (row.get("product"), row.get("programs")) != (product.digest, programs())
+        if options.page or (key not in options.names if options.names else not old):
+            continue
+        stored["rows"][key] = judged(product)
+        write(stored)
+        print(f"{key}: {_verdict(stored['rows'][key])}", flush=True)
+    write(stored)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
