@@ -7,23 +7,26 @@ The bounds are wide, because another construction of the same product is another
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Final
 
 from articad.kinematics.joints import JointType
-from articad_bench.checks import AnyCheck, Joints, Made, Moves, Parts, moved_share
-from articad_bench.likeness_checks import Arranged, Handed, Matter, arrangement, filled, handedness, moments_of
+from articad_bench.checks import AnyCheck, Joints, Lead, Made, Moves, Parts, moved_share
+from articad_bench.likeness_checks import Arranged, Handed, Matter, Row, arrangement, filled, handedness, moments_of
 from articad_bench.subject import Subject
 from articad_bench.task import Task
+from articad_bench.whole_checks import Threads
 
 __all__ = ["HANDED", "bindings", "bound", "shows_hands"]
 
 VOLUME: Final = 5.0  # times less or more of the matter
 GREATEST: Final = 2.5  # times less, for the joint that moves most
 SIZE: Final = 2.0  # times smaller or larger, as a share of the whole
-HAND: Final = 0.02  # by which the moments of mirror images differ, at least, where a hand can be told
+HAND: Final = 0.02  # by which the moments of mirror images differ, at least, where the whole has a hand
+DETAIL: Final = 0.001  # by which they differ where a detail has one: less is the roughness of meshes
 HANDED: Final = re.compile(r"\b(left|right|(anti|counter)?clockwise)\b", re.IGNORECASE)
 """Words of a prompt that tell a product from its mirror image."""
-BOUND: Final = (Moves, Made, Arranged, Handed, Matter)
+BOUND: Final = (Moves, Made, Arranged, Handed, Matter, Threads)
 
 
 def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
@@ -50,6 +53,10 @@ def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
         checks.append(Made(except_for=len(Made.wrong(subject))))
     share = filled(subject)
     checks.append(Matter(share=(_rounded(share / VOLUME), min(1.0, _rounded(share * VOLUME)))))
+    left = [joint.lead < 0 for joint in subject.assembly.joints if joint.type is JointType.SCREW]
+    stated = any(isinstance(check, Lead) and check.hand is not None for check in task.checks)
+    if not stated and 2 * sum(left) != len(left):  # else its mirror image has the same threads
+        checks.append(Threads(left=sum(left)))
     return (*checks, *_likeness(task, subject))
 
 
@@ -59,10 +66,25 @@ def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
     count = len(subject.shaped)
     if task.images and count > 1 and any(isinstance(check, Parts) and check.number == (count, count) for check in task.checks):
         rows = arrangement(subject)
-        checks.append(Arranged(parts=tuple(tuple(round(value, 4) for value in row) for row in rows)))
-    if shows_hands(task) and handedness(subject) > HAND:
-        checks.append(Handed(matter=tuple(round(value, 4) for value in moments_of(subject).tolist())))
+        checks.append(Arranged(parts=_rows(rows)))
+    elif task.images and _bodies_are_stated(task, subject):
+        checks.append(Arranged(parts=_rows(arrangement(subject, bodies=True)), bodies=True))
+    hand = handedness(subject) if shows_hands(task) else 0.0
+    if hand > DETAIL:
+        matter = tuple(round(value, 5 if hand <= HAND else 4) for value in moments_of(subject).tolist())
+        checks.append(Handed(matter=matter, margin=0.0 if hand > HAND else _rounded(hand / 2)))
     return checks
+
+
+def _rows(rows: Sequence[Row]) -> tuple[Row, ...]:
+    return tuple(tuple(round(value, 4) for value in row) for row in rows)  # type: ignore[misc]
+
+
+def _bodies_are_stated(task: Task, subject: Subject) -> bool:
+    """Return whether the joints asked for, with their numbers, are all that the reference has: then any solution has the same bodies."""
+    wanted = [check for check in task.checks if isinstance(check, Joints) and check.joint.type is not JointType.FIXED]
+    moving = sum(joint.type is not JointType.FIXED for joint in subject.assembly.joints)
+    return all(check.number[0] == check.number[1] for check in wanted) and sum(int(check.number[0]) for check in wanted) == moving > 0
 
 
 def shows_hands(task: Task) -> bool:

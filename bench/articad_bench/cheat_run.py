@@ -13,15 +13,19 @@ from typing import Any, Final
 
 import numpy as np
 
+from articad.aliases import Json
 from articad.assembly import Assembly
+from articad.batches.pool import Call
 from articad.errors import ArticadError
 from articad.kernels.kernel import BuildCache, PartKernel
+from articad_bench.bindings import DETAIL
 from articad_bench.cheats import CHEATS, cheats_of
+from articad_bench.likeness_checks import handedness
 from articad_bench.reference import reference, reference_folder
 from articad_bench.shape_checks import placed
 from articad_bench.solids import occupied
 from articad_bench.subject import Subject
-from articad_bench.task import Task
+from articad_bench.task import Task, read_task
 
 __all__ = ["SCHEMA", "CheatRow", "page", "refused_by", "run_cheats"]
 
@@ -33,7 +37,9 @@ _SOURCES: Final = (
     "checks.py",
     "shape_checks.py",
     "path_checks.py",
+    "bindings.py",
     "likeness_checks.py",
+    "whole_checks.py",
     "solids.py",
     "subject.py",
     "cheats.py",
@@ -53,9 +59,9 @@ the suite and how to submit a cheat of your own.
 | discs | a disc or a sphere on a plate for each joint that the checks ask for, made of the checks alone |
 | wires | the reference with each body a skeleton of 0.06 mm wire |
 | shells | the reference with each body hollow, its walls 1 % of its size |
-| mirrored | its mirror image; not counted where that is the same product |
+| mirrored | its mirror image; not counted where that is the same product, but for the hand of a detail such as the twist of a rotor |
 | misplaced | a moving body beside its joint |
-| omitted | without one body and its joint |
+| omitted | without one body that moves or that the text names, and what is fixed to it |
 | swapped | two bodies have each other's shapes |
 | scaled | ten times as large |
 | merged | a moving body united with what carries it, with a crumb in its place |
@@ -100,6 +106,8 @@ def run_cheats(
     kernel: PartKernel | None = None,
     again: bool = False,
     seconds: float | None = None,
+    some: int | None = None,
+    spread: Callable[[list[Call], Callable[[Json], None]], object] | None = None,
     tell: Callable[[str, str], object] = lambda _case, _outcome: None,
 ) -> dict[str, Any]:
     """Try all cheats of tasks, write `cheats.json` and the page `cheats.md`, and return the report.
@@ -115,6 +123,8 @@ def run_cheats(
         kernel: Builds the references.
         again: Whether to try cheats again that have results.
         seconds: No task is begun after this time; all by default.
+        some: No more tasks than these are tried, of those without results; all by default.
+        spread: Makes calls in other processes and gives each answer as it comes to a function; tasks are tried one by one by default.
         tell: Called with each cheat and its outcome.
     """
     out.mkdir(parents=True, exist_ok=True)
@@ -124,13 +134,40 @@ def run_cheats(
     if again:
         rows = [row for row in rows if row.task not in chosen]
     done = {row.task for row in rows}
-    for folder, task in tasks:
-        if task.name in done or task.reference is None or (end is not None and time.monotonic() > end):
-            continue
-        other = _other(every, task)
-        rows += list(_tried(folder, task, other, digests[task.name], cache, kernel, tell))
+    waiting = [(folder, task) for folder, task in tasks if task.name not in done and task.reference is not None][:some]
+    if spread is not None:
+
+        def keep(answer: Json) -> None:
+            rows.extend(CheatRow(**row) for row in answer.get("rows", ()))
+            _save(out, rows, len(every))
+
+        spread([_call(folder, task, _other(every, task), digests[task.name]) for folder, task in waiting], keep)
+        return _save(out, rows, len(every))
+    for folder, task in waiting:
+        if end is not None and time.monotonic() > end:
+            break
+        rows += list(_tried(folder, task, _other(every, task), digests[task.name], cache, kernel, tell))
         _save(out, rows, len(every))
     return _save(out, rows, len(every))
+
+
+def _call(folder: Path, task: Task, other: tuple[Path, Task] | None, digest: str) -> Call:
+    given = {"folder": str(folder.resolve()), "other": None if other is None else str(other[0].resolve()), "digest": digest}
+    return Call("articad_bench.cheat_run:try_stored", given, f"cheats-{task.name}")
+
+
+def try_stored(folder: str, other: str | None, digest: str) -> Json:
+    """Try all cheats of one task; return their rows.
+
+    Args:
+        folder: Of the task.
+        other: Folder of the task whose reference is a cheat.
+        digest: What the rows are kept by.
+    """
+    place, task = Path(folder), read_task(folder)
+    elsewhere = None if other is None else (Path(other), read_task(other))
+    rows = _tried(place, task, elsewhere, digest, BuildCache(), None, lambda _case, _outcome: None)
+    return {"task": task.name, "ok": not any(row.passed for row in rows), "rows": [asdict(row) for row in rows]}
 
 
 def _tried(
@@ -194,10 +231,16 @@ def _same_parts(reference: Assembly, swapped: Assembly) -> bool:
 
 
 def _same_mirrored(reference: Assembly, mirrored: Assembly) -> bool:
-    """Return whether a mirror image fills the same place, about the middle, and threads have the same hands."""
+    """Return whether a mirror image fills the same place, about the middle, and threads have the same hands.
+
+    It is the same as well where no moment of its matter up to the third degree tells it from what it mirrors: then the whole has no hand,
+    and that of a detail, such as the twist of a rotor's blades, is not asked for.
+    """
     leads = sorted(joint.lead for joint in reference.joints if joint.lead)
     if leads != sorted(-lead for lead in leads):
         return False
+    if handedness(Subject(reference)) <= DETAIL:
+        return True
     first, second = (occupied(placed(Subject(assembly)))[0] for assembly in (reference, mirrored))
     turned = [second, second[::-1, ::-1]]  # standing as it does, or turned half round
     return any(first.shape == each.shape and float((first ^ each).sum()) <= SAME * float(2 * first.sum()) for each in turned)

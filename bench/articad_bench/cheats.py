@@ -34,6 +34,29 @@ FACTOR: Final = 10.0
 DENSITY: Final = 1000.0  # kg/m³
 DISC_MM: Final = 20.0
 MIRROR: Final = np.diag([1.0, -1.0, 1.0, 1.0])
+_SIDES: Final = frozenset(
+    [
+        "left",
+        "right",
+        "front",
+        "back",
+        "rear",
+        "upper",
+        "lower",
+        "top",
+        "bottom",
+        "inner",
+        "outer",
+        "first",
+        "second",
+        "third",
+        "fourth",
+        "tip",
+        "end",
+        "side",
+    ]
+)
+"""Words of a part's name that say which of several it is, or where."""
 
 
 @dataclass(frozen=True)
@@ -230,9 +253,12 @@ def _misplaced(_task: Task, reference: Assembly) -> Assembly | None:
 
 
 def _omitted(task: Task, reference: Assembly) -> Assembly | None:
-    """Return the reference without one body that the request is about, and without its joint."""
-    ends = _ends(reference)
-    asked = [joint for joint in ends if joint.type is not JointType.FIXED or _words(joint.child) & _words(task.prompt)]
+    """Return the reference without one body that the request is about, and without its joint and what is fixed to it.
+
+    The request is about what moves, and what its text names: a nut or a foot that nobody asks for may be missing.
+    """
+    ends = _ends(reference, with_fixed=True)
+    asked = [joint for joint in ends if joint.type is not JointType.FIXED or _is_named(joint.child, task.prompt)]
     if not asked or len(reference.parts) < 2:
         return None
     return _without(reference, asked[-1])
@@ -339,24 +365,43 @@ CHEATS: Final[Mapping[str, Callable[[Task, Assembly], Assembly | None]]] = {
 # ---------------------------------------------------------------------- tools
 
 
-def _ends(reference: Assembly) -> list[Joint]:
-    """Return the joints of bodies that nothing hangs from and no coupling moves."""
-    uses = [name for joint in reference.joints for name in (joint.parent, joint.child)]
+def _ends(reference: Assembly, *, with_fixed: bool = False) -> list[Joint]:
+    """Return the joints of bodies that no coupling moves, and that nothing hangs from, or nothing but what is fixed to them."""
     coupled = {column.split(".")[0] for coupling in reference.mechanism.couplings for column in (coupling.a, coupling.b)}
-    ends = [joint for joint in reference.joints if uses.count(joint.child) == 1 and joint.child != reference.ground]
-    return [joint for joint in ends if joint.name not in coupled]
+    return [
+        joint
+        for joint in reference.joints
+        if joint.name not in coupled and (below := _below(reference, joint)) is not None and (with_fixed or len(below) == 1)
+    ]
+
+
+def _below(reference: Assembly, joint: Joint) -> set[str] | None:
+    """Return what goes with the child of a joint: itself and what is fixed to it; None if more hangs from it, or it is the ground."""
+    gone, joints = {joint.child}, [each for each in reference.joints if each.name != joint.name]
+    while True:
+        around = [each for each in joints if {each.parent, each.child} & gone]
+        if any(each.type is not JointType.FIXED or (each.child in gone and each.parent not in gone) for each in around):
+            return None
+        more = {each.child for each in around} - gone
+        if not more:
+            return None if reference.ground in gone else gone
+        gone |= more
 
 
 def _without(reference: Assembly, gone: Joint) -> Assembly:
+    below = _below(reference, gone) or {gone.child}
     return _changed(
         reference,
-        parts=[part for part in reference.parts.values() if part.name != gone.child],
-        joints=[joint for joint in reference.joints if joint.name != gone.name],
+        parts=[part for part in reference.parts.values() if part.name not in below],
+        joints=[joint for joint in reference.joints if not {joint.parent, joint.child} & below],
     )
 
 
-def _words(text: str) -> set[str]:
-    return {word for word in re.split(r"[^a-z]+", text.lower()) if len(word) > 3}
+def _is_named(name: str, text: str) -> bool:
+    """Return whether a text names a part, in the singular or plural, whatever it says of its side."""
+    said = set(re.split(r"[^a-z]+", text.lower()))
+    words = [word for word in re.split(r"[^a-z]+", name.lower()) if len(word) > 1 and word not in _SIDES]
+    return bool(words) and all({word, f"{word}s", f"{word}es"} & said for word in words)
 
 
 def _doubled(pin: Joint, name: str, number: int) -> Joint:

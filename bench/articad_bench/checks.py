@@ -32,6 +32,7 @@ from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
 from articad_bench.subject import Subject
+from articad_bench.whole_checks import Extent, Threads
 
 AXIS_RAD: Final = math.radians(5)  # by which an axis may lean from the one asked for
 _ABOUT_LINE: Final = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
@@ -528,7 +529,9 @@ AnyCheck = Annotated[
     | Moves
     | Arranged
     | Handed
-    | Matter,
+    | Matter
+    | Extent
+    | Threads,
     Field(discriminator="kind"),
 ]
 

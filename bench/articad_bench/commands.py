@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -45,7 +46,13 @@ if TYPE_CHECKING:
     ),
     argument("--judge", metavar="NAME", dest="judges", action="append", default=[], help="a model that scores; repeat it for several"),
     argument("--tasks", metavar="DIR", help="folder of tasks (the project's own)"),
-    argument("--some", metavar="N", type=positive, default=None, help="faults: only N cases, spread over all kinds (all)"),
+    argument(
+        "--some",
+        metavar="N",
+        type=positive,
+        default=None,
+        help="faults: only N cases, spread over all kinds; cheats: only N tasks, of those without results (all)",
+    ),
     argument("--case", metavar="NAME", dest="cases", action="append", default=[], help="faults: try this one again, PRODUCT:KIND or KIND"),
     argument("--repair", action="store_true", help="faults: also follow the hints, and build what results"),
     argument("--task", metavar="NAME", dest="names", action="append", default=[], help="only this one; may be repeated"),
@@ -186,13 +193,16 @@ def _run_here(tasks: list[tuple[Path, Task]], options: argparse.Namespace, termi
         )
 
 
-def _spread(calls: list[Call], options: argparse.Namespace, terminal: Terminal) -> list[Report]:
-    """Make calls in processes, here or on a Dask cluster."""
+def _spread(
+    calls: list[Call], options: argparse.Namespace, terminal: Terminal, keep: Callable[[Report], None] = lambda _answer: None
+) -> list[Report]:
+    """Make calls in processes, here or on a Dask cluster; each answer is kept as it comes."""
     from articad.batches.pool import run_dask, run_local
 
     with terminal.progress("Tasks", total=len(calls)) as tell:
 
         def told(answer: Report) -> None:
+            keep(answer)
             tell(answer.get("task", "?"), "passed" if answer.get("ok") else "failed")
 
         if options.engine == "dask":
@@ -319,12 +329,15 @@ def _cheats(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad_bench.cheat_run import run_cheats
     from articad_bench.task import TASKS, tasks_in
 
-    tasks = tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind)
-    with terminal.progress("Cheats") as tell:
+    tasks, every = tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind), tasks_in(options.tasks or TASKS)
+    spread = None if options.at_once == 1 and options.engine == "local" else lambda calls, keep: _spread(calls, options, terminal, keep)
+    with terminal.progress("Cheats") if spread is None else nullcontext(lambda _case, _outcome: None) as tell:
         told = run_cheats(
             tasks,
             Path(options.out),
-            every=tasks_in(options.tasks or TASKS),
+            every=every,
+            some=options.some,
+            spread=spread,
             cache=build_cache(options),
             kernel=kernel_named(options.kernel, sandbox=sandbox_level(options)),
             again=options.force,

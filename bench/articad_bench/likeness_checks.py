@@ -10,13 +10,14 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from articad.arrays import FloatArray
+from articad.geometry import TriMesh
 from articad_bench.check import Bounds, Check
 from articad_bench.shape_checks import placed
 from articad_bench.subject import Subject
 
 PLACE: Final = 0.12  # of the diagonal of the whole, by which a part may lie beside its place
 APART: Final = 0.03  # of the diagonal: places nearer to each other are not told apart
-LARGER: Final = (1.3, 1.04)  # in volume and in size: parts nearer to each other than this have no order
+LARGER: Final = {3: 1.3, 4: 1.04}  # in volume and in size, by column: parts nearer to each other than this have no order
 TURNS: Final = tuple(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]], dtype=np.float64) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1)))
 """What the whole may be turned by about the upright axis: no picture says which way is x."""
 MIRROR: Final = np.diag([1.0, -1.0, 1.0])
@@ -33,20 +34,27 @@ class Arranged(Check):
     Attributes:
         parts: Of each part its centre from the middle of the whole, its share of the matter, and its size; lengths as shares of the
             whole's diagonal.
+        bodies: Whether these are bodies: parts that are fixed together count as one. Bodies may be of any number of parts, and how much of
+            its box a body fills is its maker's choice; so their order of size is that of their boxes.
     """
 
     kind: Literal["arranged"] = "arranged"
     parts: tuple[Row, ...]
+    bodies: bool = False
 
     @property
     def wanted(self) -> str:
-        return f"{len(self.parts)} parts lie where they are shown, within {100 * PLACE:g} % of the whole, in their order of size"
+        return f"{len(self.parts)} {self._name} lie where they are shown, within {100 * PLACE:g} % of the whole, in their order of size"
+
+    @property
+    def _name(self) -> str:
+        return "bodies" if self.bodies else "parts"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        if len(subject.shaped) != len(self.parts):
-            return False, f"{len(subject.shaped)} parts"
-        found, wanted = np.array(arrangement(subject)), np.array(self.parts)
-        tries = [_compared(found, wanted, turn) for turn in TURNS]
+        found, wanted = np.array(arrangement(subject, bodies=self.bodies)), np.array(self.parts)
+        if len(found) != len(wanted):
+            return False, f"{len(found)} {self._name}"
+        tries = [_compared(found, wanted, turn, columns=(4,) if self.bodies else (3, 4)) for turn in TURNS]
         beside, reversed_ = min(tries, key=lambda each: (each[0] > PLACE or each[1] > 0, each))
         return (
             beside <= PLACE and not reversed_,
@@ -54,30 +62,37 @@ class Arranged(Check):
         )
 
 
-def _compared(found: FloatArray, wanted: FloatArray, turn: FloatArray) -> tuple[float, int]:
-    """Return how far the worst part lies beside its place, and how many pairs of parts have the other order of size."""
+def _compared(found: FloatArray, wanted: FloatArray, turn: FloatArray, columns: Sequence[int]) -> tuple[float, int]:
+    """Return how far the worst part lies beside its place, and how many pairs of parts have the other order of size by some columns."""
     apart = np.linalg.norm(found[:, None, :3] - (wanted[:, :3] @ turn.T)[None], axis=2)
-    rows, columns = linear_sum_assignment(apart**2)
-    mine = found[rows[np.argsort(columns)]]
+    rows, places = linear_sum_assignment(apart**2)
+    mine = found[rows[np.argsort(places)]]
     wrong = 0
     for a, b in combinations(range(len(wanted)), 2):
         if np.linalg.norm(wanted[a, :3] - wanted[b, :3]) < APART:
             continue
-        for column, least in zip((3, 4), LARGER, strict=True):
+        for column in columns:
+            least = LARGER[column]
             shown, is_ = np.log(wanted[a, column] / wanted[b, column]), np.log(mine[a, column] / mine[b, column])
             wrong += bool(abs(shown) > np.log(least) and shown * is_ < 0)
-    return float(apart[rows, columns].max()), wrong
+    return float(apart[rows, places].max()), wrong
 
 
-def arrangement(subject: Subject) -> list[Row]:
-    """Return for each part its centre, share of the matter and size, as `Arranged` states them."""
+def arrangement(subject: Subject, *, bodies: bool = False) -> list[Row]:
+    """Return for each part, or body, its centre, share of the matter and size, as `Arranged` states them."""
     meshes = placed(subject)
     ends = subject.corners(subject.rest)
-    diagonal, volumes = float(np.linalg.norm(ends[1] - ends[0])), [abs(mesh.volume) for mesh in meshes]
+    diagonal, whole = float(np.linalg.norm(ends[1] - ends[0])), sum(abs(mesh.volume) for mesh in meshes)
+    groups: dict[str, list[TriMesh]] = {}
+    for name, mesh in zip(subject.shaped, meshes, strict=True):
+        groups.setdefault(subject.rigid[name] if bodies else name, []).append(mesh)
     rows: list[Row] = []
-    for mesh, volume in zip(meshes, volumes, strict=True):
-        x, y, z = ((mesh.solid_integrals()[1] - ends.mean(axis=0)) / diagonal).tolist()
-        rows.append((x, y, z, volume / sum(volumes), float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))) / diagonal))
+    for group in groups.values():
+        volumes = [abs(mesh.volume) for mesh in group]
+        centre = np.average([mesh.solid_integrals()[1] for mesh in group], axis=0, weights=volumes)
+        x, y, z = ((centre - ends.mean(axis=0)) / diagonal).tolist()
+        sides = np.ptp(np.concatenate([mesh.vertices for mesh in group]), axis=0)
+        rows.append((x, y, z, sum(volumes) / whole, float(np.linalg.norm(sides)) / diagonal))
     return rows
 
 
@@ -107,10 +122,13 @@ class Handed(Check):
 
     Attributes:
         matter: `moments` of the product that is shown.
+        margin: By how much it may lie more like the mirror image: where the two differ in a detail alone, a product without it may pass,
+            and one with the detail of the mirror image may not.
     """
 
     kind: Literal["handed"] = "handed"
     matter: tuple[float, ...]
+    margin: float = 0.0
 
     @property
     def wanted(self) -> str:
@@ -121,7 +139,8 @@ class Handed(Check):
         wanted = np.array(self.matter)
         straight = [float(np.linalg.norm(moments(_turned(subject, turn)) - wanted)) for turn in TURNS]
         mirrored = [float(np.linalg.norm(moments(_turned(subject, turn @ MIRROR)) - wanted)) for turn in TURNS]
-        return bool(meshes) and min(straight) < min(mirrored), f"differs by {min(straight):.2g}, its mirror image by {min(mirrored):.2g}"
+        ok = bool(meshes) and min(straight) < min(mirrored) + self.margin
+        return ok, f"differs by {min(straight):.2g}, its mirror image by {min(mirrored):.2g}"
 
 
 def handedness(subject: Subject) -> float:

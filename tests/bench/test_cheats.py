@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,9 @@ import manifold3d
 import numpy as np
 import pytest
 
+from articad.aliases import Json
 from articad.assembly import Assembly
+from articad.batches.pool import Call
 from articad.connectors import SE3
 from articad.geometry import Part, TriMesh, box, cylinder
 from articad.kinematics.joints import Joint
@@ -213,7 +216,81 @@ def test_a_mirror_image_is_told_from_what_a_picture_shows_and_another_constructi
     assert [each.kind for each in bindings(task(prompt="A block with a handle."), shown)] == ["matter"]  # nothing tells left from right
 
 
+def test_bodies_lie_where_a_picture_shows_them_of_however_many_parts_they_are_made() -> None:
+    """A carriage may be one part or two; a body that lies elsewhere, or has changed places with a larger one, is refused."""
+    slides = [joint(f"s{i}", "slider", ("base", at(0)), (name, at(0)), limits=[(0.0, 9.0)]) for i, name in enumerate("ab")]
+    held = joint("held", "fixed", ("a", at(0)), ("cap", at(0)))
+    sliders = {"kind": "joints", "joint": {"type": "slider"}, "number": [2, 2]}
+    chosen = task(prompt="", images=["drawing.png"], checks=[{"kind": "parts", "number": [3, 9]}, sliders])
+
+    def product(a: float, b: float, *, cap: bool = False) -> Subject:
+        bodies = [
+            ("base", placed(box(200, 40, 10), 0, 0, -20)),
+            ("a", placed(box(30, 20, 20), a, 0, 0)),
+            ("b", placed(box(12, 20, 8), b, 0, 0)),
+        ]
+        return of(*bodies, *([("cap", placed(box(10, 10, 2), a, 0, 11.1))] if cap else []), joints=[*slides, *([held] if cap else [])])
+
+    (check,) = (each for each in bindings(chosen, product(-60, 60)) if each.kind == "arranged")
+
+    assert check.judge(product(-60, 60)).ok
+    assert check.judge(product(-60, 60, cap=True)).ok
+    assert not check.judge(product(-60, -20)).ok
+    odd = task(prompt="", images=["drawing.png"], checks=[{"kind": "parts", "number": [3, 9]}, sliders | {"number": [2, 4]}])
+    assert "arranged" not in {each.kind for each in bindings(odd, product(-60, 60))}  # there may be more slides, and more bodies
+
+
+def test_a_detail_has_a_hand_and_who_leaves_it_out_is_no_mirror_image() -> None:
+    def with_knob(y: float | None) -> Subject:
+        knob = [] if y is None else [solid(placed(box(10, 8, 8), 40, y, 12))]
+        return of(("body", made("Add", solid(box(100, 60, 20)), *knob)), joints=[])
+
+    (check,) = (each for each in bindings(pictured(1), with_knob(20)) if each.kind == "handed")
+
+    assert check.judge(with_knob(20)).ok
+    assert check.judge(with_knob(None)).ok
+    assert not check.judge(with_knob(-20)).ok
+
+
+def test_threads_are_right_handed_where_nothing_is_said() -> None:
+    bodies = (("nut", box(20, 20, 10)), ("bolt", placed(cylinder(4, 30), 0, 0, 40)))
+    screws = {
+        lead: of(*bodies, joints=[joint("s", "screw", ("nut", at(0)), ("bolt", at(0)), limits=[(0.0, 6.0)], lead=lead)])
+        for lead in (2.0, -2.0)
+    }
+    (check,) = (each for each in bindings(task(checks=[]), screws[2.0]) if each.kind == "threads")
+
+    assert check.judge(screws[2.0]).ok
+    assert not check.judge(screws[-2.0]).ok
+    stated = task(checks=[{"kind": "lead", "mm": 2, "hand": "right"}])
+    assert "threads" not in {each.kind for each in bindings(stated, screws[2.0])}
+
+
+def test_a_size_may_be_given_as_from_and_to() -> None:
+    longest, height = ({"kind": "extent", "side": side, "mm": [90, 110]} for side in ("longest", "z"))
+
+    assert form(longest).judge(of(("bar", box(20, 100, 10)), joints=[])).ok
+    assert not form(longest).judge(of(("bar", box(20, 1000, 10)), joints=[])).ok
+    assert not form(height).judge(of(("bar", box(20, 100, 10)), joints=[])).ok
+
+
 # ---------------------------------------------------------------------- the suite
+
+
+def test_what_is_left_out_moves_or_stands_in_the_text() -> None:
+    """A nut that nobody asks for may be missing; a leg of "four legs" may not; what is fixed to a body goes with it."""
+    fixed = [joint(name, "fixed", ("plate", at(0)), (name, at(0))) for name in ("leg_left", "pivot_nut")]
+    cap = joint("cap", "fixed", ("lever", at(0)), ("cap", at(0)))
+    reference = hinge()
+    parts = [*reference.parts.values(), *(Part.from_mesh(n, box(5, 5, 5), density=1000) for n in ("leg_left", "pivot_nut", "cap"))]
+    whole = Assembly.from_parts("whole", parts=parts, joints=[*reference.joints, *fixed, cap], ground="plate")
+
+    def left(prompt: str) -> set[str]:
+        (cheat,) = cheats_of(task(prompt=prompt), whole, ("omitted",))
+        return set(whole.parts) - set(cheat.assembly.parts)
+
+    assert left("It stands on four legs, with a lever on a pivot.") == {"leg_left"}
+    assert left("A lever on a pivot, to the left.") == {"lever", "cap"}
 
 
 def test_a_shell_of_a_thick_board_fills_too_little() -> None:
@@ -231,6 +308,16 @@ def test_bodies_of_the_same_shape_may_be_exchanged() -> None:
     """That is the same product; two of different shapes make another."""
     assert the_same("swapped", shelves(-40.0, 40.0, second=40.0).assembly, shelves(40.0, -40.0, second=40.0).assembly)
     assert not the_same("swapped", shelves(-40.0, 40.0).assembly, shelves(40.0, -40.0).assembly)
+
+
+def test_a_mirror_image_is_the_same_where_the_whole_has_no_hand() -> None:
+    def mirrored(*bodies: manifold3d.Manifold) -> bool:
+        assembly = of(("body", made("Add", *bodies)), joints=[]).assembly
+        (cheat,) = cheats_of(pictured(1), assembly, ("mirrored",))
+        return the_same("mirrored", assembly, cheat.assembly)
+
+    assert mirrored(solid(box(100, 60, 20)), solid(placed(box(10, 8, 8), 40, 0, 12)))
+    assert not mirrored(solid(box(100, 60, 20)), solid(placed(box(10, 8, 40), 40, 20, 20)))
 
 
 def test_no_cheat_of_a_bound_task_passes_and_the_reference_does() -> None:
@@ -288,6 +375,22 @@ def test_a_run_of_the_suite_is_kept_and_made_anew_only_where_something_changed(t
     assert not later["ok"]  # one check alone is passed by cheats, and the report says so
     assert ["bracket_corner", "scaled"] in later["passed"]
     assert json.loads((tmp_path / "cheats.json").read_text())["passed"] == later["passed"]
+
+
+def test_cheats_are_tried_in_other_processes_and_each_answer_is_kept_as_it_comes(tmp_path: Path) -> None:
+    chosen, every, kept = tasks_in(TASKS, names=["bracket_corner", "mug_straight", "vase_cone"]), tasks_in(TASKS), []
+
+    def spread(calls: list[Call], keep: Callable[[Json], None]) -> None:
+        for call in calls:
+            row = CheatRow(Path(str(call.arguments["folder"])).name, "discs", "size", "", same=False, digest=str(call.arguments["digest"]))
+            keep({"rows": [asdict(row)]})
+            kept.append(json.loads((tmp_path / "cheats.json").read_text())["tried"])
+
+    report = run_cheats(chosen, tmp_path, every=every, some=2, spread=spread)
+
+    assert kept == [1, 2]
+    assert report["tried"] == 2
+    assert run_cheats(chosen, tmp_path, every=every, spread=spread)["tried"] == 3
 
 
 def test_every_kind_of_cheat_is_explained_and_the_page_is_that_of_its_results() -> None:

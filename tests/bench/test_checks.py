@@ -65,6 +65,8 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("wiper_tandem", {"kind": "level", "mm": [56, 68], "number": [1, 999]}),
     ("planetary_hoist", {"kind": "turns", "ratio": 4.5, "number": [1, 3]}),
     *(("hinge_pintle_gate", bound("hinge_pintle_gate", kind)) for kind in ("matter", "arranged", "handed")),
+    ("desk_lamp", {"kind": "extent", "side": "z", "mm": [300, 420]}),
+    ("toggle_clamp", {"kind": "threads"}),
 ]
 
 

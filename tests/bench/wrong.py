@@ -303,6 +303,13 @@ def _mirror_image(_check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, parts))
 
 
+def _longer(check: Check, subject: Subject) -> Subject:
+    """A rod reaches far beyond what is allowed, to all sides."""
+    reach = 3 * check.mm[1]  # type: ignore[attr-defined]
+    name = subject.shaped[0]
+    return _with_mesh(subject, name, box(reach, reach, reach))
+
+
 def _nothing_around(_check: Check, subject: Subject) -> Subject:
     """Parts that could hold others have no shape."""
     moving = {joint.child for joint in subject.assembly.joints if joint.type is not JointType.FIXED}
@@ -334,8 +341,8 @@ def _heavy_beside(_check: Check, subject: Subject) -> Subject:
 
 
 def _other_lead(_check: Check, subject: Subject) -> Subject:
-    """Screws are twice as steep."""
-    return Subject(changed(subject.assembly, joints=[replace(joint, lead=2 * joint.lead) for joint in subject.assembly.joints]))
+    """Screws are twice as steep, and of the other hand."""
+    return Subject(changed(subject.assembly, joints=[replace(joint, lead=-2 * joint.lead) for joint in subject.assembly.joints]))
 
 
 VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
@@ -363,6 +370,8 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "made": _nothing_around,
     "moves": _crumbs,
     "matter": _corners,
+    "extent": _longer,
+    "threads": _other_lead,
     "arranged": _one_aside,
     "handed": _mirror_image,
     "unchanged": _all_new,
