@@ -6,8 +6,8 @@ import hashlib
 import json
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -82,6 +82,7 @@ class CheatRow:
         measured: What that check measured.
         same: Whether it is the same product as the reference, so that it is no cheat.
         digest: Of the task, its reference, the checks and the cheats.
+        earlier: Whether one of these has changed since.
     """
 
     task: str
@@ -90,6 +91,7 @@ class CheatRow:
     measured: str
     same: bool
     digest: str
+    earlier: bool = False
 
     @property
     def passed(self) -> bool:
@@ -112,8 +114,8 @@ def run_cheats(
 ) -> dict[str, Any]:
     """Try all cheats of tasks, write `cheats.json` and the page `cheats.md`, and return the report.
 
-    Results are written after every task; those of tasks whose task, reference, checks and cheats are unchanged are kept. Rows of tasks that
-    are not chosen stay as they are, if they are still valid.
+    Results are written after every task. A task is tried again if it, its reference, the checks or the cheats have changed. Until then its
+    rows stay, and the page counts them as answers of earlier checks.
 
     Args:
         tasks: Folders and tasks to try.
@@ -129,16 +131,23 @@ def run_cheats(
     """
     out.mkdir(parents=True, exist_ok=True)
     digests = {task.name: _digest(folder, task) for folder, task in every}
-    rows = [row for row in _known(out / _RESULTS) if row.digest == digests.get(row.task)]
+    known = [row for row in _known(out / _RESULTS) if row.task in digests]
+    rows = [replace(row, earlier=row.digest != digests[row.task]) for row in known]
     chosen, end = {task.name for _, task in tasks}, None if seconds is None else time.monotonic() + seconds
     if again:
         rows = [row for row in rows if row.task not in chosen]
-    done = {row.task for row in rows}
+    done = {row.task for row in rows} - {row.task for row in rows if row.earlier}
     waiting = [(folder, task) for folder, task in tasks if task.name not in done and task.reference is not None][:some]
+
+    def put(fresh: Iterable[CheatRow]) -> None:
+        fresh = list(fresh)
+        tried = {row.task for row in fresh}
+        rows[:] = [*(row for row in rows if row.task not in tried), *fresh]
+
     if spread is not None:
 
         def keep(answer: Json) -> None:
-            rows.extend(CheatRow(**row) for row in answer.get("rows", ()))
+            put(CheatRow(**row) for row in answer.get("rows", ()))
             _save(out, rows, len(every))
 
         spread([_call(folder, task, _other(every, task), digests[task.name]) for folder, task in waiting], keep)
@@ -146,7 +155,7 @@ def run_cheats(
     for folder, task in waiting:
         if end is not None and time.monotonic() > end:
             break
-        rows += list(_tried(folder, task, _other(every, task), digests[task.name], cache, kernel, tell))
+        put(_tried(folder, task, _other(every, task), digests[task.name], cache, kernel, tell))
         _save(out, rows, len(every))
     return _save(out, rows, len(every))
 
@@ -294,6 +303,10 @@ def page(report: Mapping[str, Any], rows: Sequence[CheatRow]) -> str:
         _ABOUT,
         f"{report['cheats']} cheats of {report['tried']} of {report['tasks']} tasks were tried; {len(report['passed'])} pass.\n",
     ]
+    if earlier := sum(row.earlier for row in rows):
+        lines.append(
+            f"{earlier} of {len(rows)} answers are of earlier checks, cheats or tasks: `articad bench cheats` tries these again.\n"
+        )
     lines.append("| cheat | tried | same | pass | refused by |")
     lines.append("|---|---|---|---|---|")
     for kind in (*CHEATS, "other"):

@@ -370,8 +370,12 @@ def test_a_run_of_the_suite_is_kept_and_made_anew_only_where_something_changed(t
     page = (tmp_path / "cheats.md").read_text()
     assert "| scaled | 1 | 0 | 0 | size 1 |" in page
     changed = chosen[0][1].model_copy(update={"checks": chosen[0][1].checks[:1]})
+    stale = run_cheats([], tmp_path, every=[(chosen[0][0], changed)])
+    assert {row["earlier"] for row in stale["rows"]} == {True}
+    assert f"{len(stale['rows'])} of {len(stale['rows'])} answers are of earlier checks" in (tmp_path / "cheats.md").read_text()
     later = run_cheats([(chosen[0][0], changed)], tmp_path, every=[(chosen[0][0], changed)], tell=lambda case, _: told.append(case))
     assert len(told) > tried
+    assert {row["earlier"] for row in later["rows"]} == {False}
     assert not later["ok"]  # one check alone is passed by cheats, and the report says so
     assert ["bracket_corner", "scaled"] in later["passed"]
     assert json.loads((tmp_path / "cheats.json").read_text())["passed"] == later["passed"]
