@@ -181,6 +181,7 @@ OWN = {
     "mcp/skill.py": "the package's own texts",
     "memory/documentation.py": "the package's own texts, its own cache, and what a confined process wrote into a private folder",
     "memory/experience.py": "a database",
+    "processes/child.py": "/proc of its own process",
     "processes/scratch.py": "its own folders",
     "report/page.py": "the package's own texts",
     "runs/drawing.py": "pictures that a process of articad wrote into a private folder",
