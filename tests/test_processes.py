@@ -241,6 +241,52 @@ def test_no_process_outlives_its_parent_and_no_folder_the_next_start(work: str, 
     assert list(temporary.iterdir()) == []
 
 
+# A process that kills what is below it, where some of its children are another user's, in every order.
+FOREIGN = """
+import os, signal, sys, time
+from articad.processes import child
+pids = []
+for foreign in map(int, sys.argv[1]):
+    pid = os.fork()
+    if pid == 0:
+        if not foreign:
+            os.setuid(65534)
+        os.write(1, b".")
+        os.close(1)
+        time.sleep(300)
+        os._exit(0)
+    pids.append(pid)
+    os.write(1, f"{pid} ".encode())
+while os.read(0, 1) != b"\\n":
+    pass
+os.setuid(65534)
+child._kill_all_below()
+print("done", flush=True)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="only root starts processes of two users")
+@pytest.mark.parametrize("order", ["10", "01", "101", "0110", "11", "00"])
+def test_a_process_that_cannot_be_killed_spares_no_other(order: str) -> None:
+    with subprocess.Popen([sys.executable, "-c", FOREIGN, order], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as parent:
+        assert parent.stdin is not None
+        assert parent.stdout is not None
+        said = b""
+        while said.count(b".") < len(order) or said.count(b" ") < len(order):
+            said += os.read(parent.stdout.fileno(), 4096)
+        pids = [int(word) for word in said.replace(b".", b"").split()]
+        try:
+            parent.stdin.write(b"\n")
+            parent.stdin.flush()
+            assert parent.stdout.read(5) == b"done\n"
+            assert gone([pid for pid, foreign in zip(pids, order, strict=True) if foreign == "0"])
+            assert all(alive(pid) for pid, foreign in zip(pids, order, strict=True) if foreign == "1")
+        finally:
+            for pid, foreign in zip(pids, order, strict=True):
+                if foreign == "1":
+                    os.kill(pid, signal.SIGKILL)
+
+
 def test_a_program_ends_as_by_itself_and_is_alone_at_its_pipes() -> None:
     """The process that watches it neither changes its end nor holds its pipes."""
     for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV):

@@ -81,17 +81,28 @@ def _end_all() -> None:
 
 
 def _kill_all_below() -> None:
-    """Kill the processes below this one, in whatever group they are."""
-    with contextlib.suppress(OSError):  # the system lists no children
-        for _ in range(_ROUNDS):
-            with open(f"/proc/self/task/{os.getpid()}/children", encoding="ascii") as listed:  # noqa: PTH123 - a start without pathlib is faster
-                below = [int(word) for word in listed.read().split()]
-            if not below:
-                break
-            for child in below:
+    """Kill the processes below this one, in whatever group they are, but those of other users."""
+    spared: set[int] = set()
+    for _ in range(_ROUNDS):
+        below = _children() - spared
+        for child in below:
+            try:
                 os.kill(child, signal.SIGKILL)
-            for child in below:
+            except OSError:  # another user's, such as a setuid program: to wait for it would be to wait until it ends by itself
+                spared.add(child)
+        for child in below - spared:
+            with contextlib.suppress(OSError):
                 os.waitpid(child, 0)  # its own children are now children of this process
+        if not below:
+            break
+
+
+def _children() -> set[int]:
+    """Return the children of this process; none where the system does not list them."""
+    path = f"/proc/self/task/{os.getpid()}/children"
+    with contextlib.suppress(OSError), open(path, "rb") as listed:  # noqa: PTH123 - a start without pathlib is faster
+        return set(map(int, listed.read().split()))
+    return set()
 
 
 def _end_as(code: int) -> None:
