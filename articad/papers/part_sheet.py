@@ -49,6 +49,7 @@ _HOLE_WIDTHS: Final = (17.0, 11.0, 15.0, 15.0, 14.0, 16.0, 48.0)
 _HOLE_HEAD: Final = ("hole", "view", "x", "y", "Ø", "depth", "fit")
 _NAME_WIDTHS: Final = (38.0, 16.0)
 _GAP: Final = 14.0  # between views
+_LEAST_ISO: Final = 30.0  # width that tables leave for the isometric view
 _TINY: Final = 0.1  # scale at which bores are dots: a larger paper is taken for the next scale already
 
 
@@ -184,6 +185,8 @@ def _layout(facts: PartFacts, paper: tuple[float, float], *, tables: bool = True
         seated = _seated(wanted, x_free, y_free, right, ceiling)
         if seated is None:
             seated = _seated(wanted, x_free, y_free, right, ceiling, apart=True)
+        if seated is None:  # to the right of all views, up to the top
+            seated = _seated(wanted, far + leaders - _LEAST_ISO, y_free, right, top)
         if seated is None:
             continue
         placed_tables, x_iso = seated
@@ -230,7 +233,7 @@ def _seated(wanted: Sequence[Any], x_free: float, y_free: float, right: float, c
         tall, wide = ROW * (len(rows) + 1) + 6.0, max(sum(widths), 1.08 * text_width(title, SMALL))
         if placed and (apart or y + tall > ceiling):
             x, y, widest = x - widest - 5.0, y_free, 0.0
-        if y + tall > ceiling or x - wide < x_free + 30.0:
+        if y + tall > ceiling or x - wide < x_free + _LEAST_ISO:
             return None
         placed.append((x, y, title, head, rows, widths))
         y, widest = y + tall + 3.0, max(widest, wide)

@@ -15,6 +15,7 @@ import ezdxf
 import numpy as np
 import pytest
 
+from articad.agents.pipeline import replay
 from articad.assembly import Assembly
 from articad.entry import read
 from articad.errors import ArticadError
@@ -28,8 +29,10 @@ from articad.papers.part_sheet import FRONT
 from articad.papers.sheet import DrawingSheet, Lettering, text_width
 from articad.papers.writers import written_dxf, written_pdf, written_svg
 from articad.plan.schema import AssemblyPlan
+from articad.runs.record import assembly_of
 from tests.freecad import opened
 
+ROOT = Path(__file__).parents[2]
 PLATE = """
 from build123d import Align, Box, Cylinder, Pos, Rot
 def build(part):
@@ -128,13 +131,30 @@ def test_every_dimension_of_a_drawing_equals_the_plan_s_number(name: str) -> Non
     ],
 )
 def test_every_dimension_of_a_product_s_drawings_equals_the_plan_s_number(folder: str) -> None:
-    assembly = read(Path(__file__).parents[2] / folder)
+    assembly = read(ROOT / folder)
     assert assembly.resolved is not None
     drawn = [one for one in drawings_of(assembly) if one.part is not None]
     for one in drawn:  # the kernel's box of a round part is 1e-7 mm larger on each side; sheets print 1e-4 mm
         assert one.part is not None
         assert_as_planned(one, {key: float(value) for key, value in assembly.resolved.parts[one.part].dimensions.items()}, 1e-6)
     assert len(drawn) >= 6
+
+
+def test_every_dimension_of_the_recorded_hand_press_equals_the_plan_s_number(tmp_path: Path) -> None:
+    with replay(ROOT / "tests" / "recordings" / "asked" / "hand_press", out=tmp_path / "run").run as made:
+        assembly = assembly_of(made).product()
+        assert assembly.resolved is not None
+        drawn = [one for one in drawings_of(assembly) if one.part is not None]
+        for one in drawn:
+            assert one.part is not None
+            assert_as_planned(one, {key: float(value) for key, value in assembly.resolved.parts[one.part].dimensions.items()}, 1e-6)
+    assert len(drawn) >= 4
+
+
+def test_tables_go_beside_the_views_where_a_larger_scale_fits_then() -> None:
+    """The plate with foot of the press, 190 x 120 x 302 mm, fits on A3 at 1 : 2: its three views need 155 x 211 mm of 400 x 277 mm."""
+    frame = next(one for one in drawings_of(read(ROOT / "bench/articad_bench/tasks/press_toggle/reference")) if one.part == "frame")
+    assert frame.scale == 0.5
 
 
 def test_the_views_show_what_a_workshop_needs() -> None:
