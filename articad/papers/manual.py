@@ -106,7 +106,8 @@ class _Manual:
         facts = [f"{parts} parts, {len(self.items)} items, {len(self.order.steps)} steps."]
         permitted = [step for step in self.order.steps if step.strength == "permitted"]
         proven = sum(bool(step.moves) and step.strength == "proven" for step in self.order.steps)
-        facts.append(f"The paths of {proven} steps are proven free of collisions all along.")
+        starts = sum(not step.moves and not step.onto for step in self.order.steps)
+        facts.append(f"The paths of {proven} steps are proven free of collisions all along; {starts} steps lay down a first part.")
         if permitted:
             listed = ", ".join(str(step.number) for step in permitted)
             facts.append(f"Not proven, because parts are joined by force or bought as one: step {listed}.")
@@ -139,11 +140,13 @@ class _Manual:
             )
             sheet.pictures.append(SheetPicture(x + 2.5, y + 12.0, wide, high, printed(scene, camera)))
         size = "" if item.size_mm is None else " × ".join(f"{length:.4g}" for length in item.size_mm) + " mm"
+        room = _CELL[0] - 11.0
+        height = 2.5 if text_width(item.name, 2.5) <= room else 2.0
         sheet.texts += [
             Lettering(x + 2.5, y + 7.0, f"{item.number}", 3.5, bold=True),
-            Lettering(x + _CELL[0] - 2.5, y + 7.0, f"{item.quantity} ×", 3.0, "end"),
-            Lettering(x + 9.0, y + 7.2, _fitting(item.name, _CELL[0] - 21.0, 2.5), 2.5),
-            Lettering(x + 2.5, y + 3.0, _fitting(f"{size}{', bought' if item.supply == 'purchased' else ''}", _CELL[0] - 5.0, 2.0), 2.0),
+            Lettering(x + 9.0, y + 7.2, _fitting(item.name, room, height), height),
+            Lettering(x + 2.5, y + 3.0, _fitting(f"{size}{', bought' if item.supply == 'purchased' else ''}", _CELL[0] - 14.0, 2.0), 2.0),
+            Lettering(x + _CELL[0] - 2.5, y + 2.8, f"{item.quantity} ×", 2.5, "end"),
         ]
         sheet.box("thin", x, y, x + _CELL[0], y + _CELL[1])
 

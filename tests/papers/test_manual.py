@@ -72,6 +72,22 @@ def test_there_is_a_page_for_each_step_with_the_items_that_are_new() -> None:
         assert {str(n) for n in new} <= {text.words for text in page.texts}
 
 
+def test_items_with_long_names_that_begin_alike_are_told_apart() -> None:
+    names = ["bucket_ram_barrel_left", "bucket_ram_barrel_rear"]
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in zip(names, (BOX, LID), strict=True)]
+    product = Assembly.from_parts("rams", parts=parts, joints=[fixed("weld", *names)], ground=names[0])
+    page = next(page for page in manual_of(product, product.assembly_order(), items_of(product), dots=1.0) if page.told["page"] == "items")
+    assert set(names) <= {text.words for text in page.texts}
+    assert len(boxes(page)) > 0
+
+
+def test_the_cover_accounts_for_every_step() -> None:
+    (told,) = [text.words for text in pages()[0].texts if text.words.startswith("The paths of")]
+    paths, starts = (int(word) for word in told.replace(";", " ").split() if word.isdigit())
+    permitted = sum(step.strength == "permitted" for step in order().steps)
+    assert paths + starts + permitted == len(order().steps)
+
+
 def test_new_parts_and_no_others_are_drawn_in_colour() -> None:
     wanted = np.array([int(NEW[at : at + 2], 16) for at in (1, 3, 5)])
     for page, step in zip(steps(), order().steps, strict=True):
