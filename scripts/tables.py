@@ -1,4 +1,4 @@
-"""Writes the pages of docs/reference that are tables of the code: findings, losses and the command line, and that of stored orders of assembly.
+"""Writes the pages of docs/reference that are tables of the code: findings, losses and the command line, and those of stored orders of assembly and findings on joints.
 
 `--check` only compares.
 """
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import get_args
 
 from orders import stored_page as orders
+from realised import stored_page as realised
 
 import articad.commands
 import articad.kernels
@@ -257,6 +258,7 @@ PAGES = {
     "cli.md": commands,
     "freecad-kernel.md": freecad_kernel,
     "orders.md": orders,
+    "realised.md": realised,
 }
 
 
