@@ -43,8 +43,9 @@ def tidy(values: Iterable[float], scale: float = 1.0) -> list[float]:
 
 
 def comment(text: str) -> Any:
-    """Return a comment with any text: names of joints and reasons of waivers are anybody's, and a comment may hold no two hyphens in a row."""
-    return etree.Comment(f" {re.sub('-(?=-)', '- ', escaped(text))} ")
+    """Return a comment with any text in one line: names and reasons of waivers are anybody's, and a comment may hold no two hyphens in a row."""
+    line = " ".join(escaped(text).splitlines())
+    return etree.Comment(f" {re.sub('-(?=-)', '- ', line)} ")
 
 
 def rpy(T: SE3) -> tuple[float, float, float]:

@@ -17,7 +17,7 @@ import numpy as np
 from articad.errors import ArticadError
 from articad.export.arrays import load_arrays, save_arrays
 from articad.export.convex import manifold
-from articad.export.names import Names
+from articad.export.names import FileNames
 from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import write_obj, write_stl
 from articad.geometry.part import Part, Shape
@@ -133,7 +133,7 @@ class MeshFiles:
     ) -> None:
         self.kind, self.folder, self.prefix, self.draws, self.cache = kind, folder, prefix, draws, cache
         self.files: dict[str, bytes] = {}
-        self._names = Names()
+        self._names = FileNames()
         self.by_digest: dict[str, str] = {}
         self._expected: set[str] = set()
         self._built: dict[str, TriMesh] = {}

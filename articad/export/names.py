@@ -7,6 +7,7 @@ import unicodedata
 from collections.abc import Iterable
 
 MAX_LENGTH = 120  # characters; files are named after parts, and file systems allow 255 bytes
+_DEVICE = re.compile("con|prn|aux|nul|com[0-9]|lpt[0-9]", re.IGNORECASE)  # with any suffix: Microsoft, Naming Files, Paths, and Namespaces
 
 
 def called(tag: str, names: Iterable[str]) -> str:
@@ -23,7 +24,7 @@ class Names:
     """Assigns valid names, each once, and none that is reserved."""
 
     def __init__(self, reserved: Iterable[str] = (), *, any_text: bool = False) -> None:
-        self._taken: set[str] = set(reserved)
+        self._taken: set[str] = set(map(self._key, reserved))
         self._next: dict[str, int] = {}  # name -> the number that it gets next: counting from 2 each time would be quadratic
         self._valid = str if any_text else valid_name
         self.changed: dict[str, str] = {}
@@ -32,14 +33,31 @@ class Names:
         """Return `wanted` if it is valid and unused, else a similar valid name; `changed` records which."""
         name = free = self._valid(wanted)
         number = self._next.get(name, 2)
-        while free in self._taken:
+        while self._key(free) in self._taken:
             free = f"{name}_{number}"
             number += 1
         self._next[name] = number
-        self._taken.add(free)
+        self._taken.add(self._key(free))
         if free != wanted:
             self.changed[wanted] = free
         return free
+
+    @staticmethod
+    def _key(name: str) -> str:
+        """Return what two names may not have in common."""
+        return name
+
+
+class FileNames(Names):
+    """Names of files on every system: two never differ by case alone, and none is that of a device of Windows."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._valid = _valid_file
+
+    @staticmethod
+    def _key(name: str) -> str:
+        return name.casefold()
 
 
 def file_name(wanted: str) -> str:
@@ -54,3 +72,8 @@ def valid_name(wanted: str) -> str:
     if name != wanted:
         name = name.strip("_")
     return name if name[:1].isalpha() else f"n{name}"
+
+
+def _valid_file(wanted: str) -> str:
+    name = valid_name(wanted)
+    return f"{name}_file" if _DEVICE.fullmatch(name) else name

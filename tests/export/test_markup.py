@@ -1,7 +1,8 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
+from collections.abc import Callable
+from pathlib import Path, PureWindowsPath
 
 import numpy as np
 import pytest
@@ -11,9 +12,18 @@ from lxml import etree
 from scipy.spatial.transform import Rotation
 
 import articad
+from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
+from articad.export.bundle import Bundle
 from articad.export.markup import child, comment, document, number, rgba, rpy, wxyz
-from articad.export.names import MAX_LENGTH, Names, valid_name
+from articad.export.mjcf import write_mjcf
+from articad.export.names import MAX_LENGTH, FileNames, Names, valid_name
+from articad.export.sdf import write_sdf
+from articad.export.urdf import write_urdf
+from articad.kinematics import declare
+from tests.assemblies import block, frame
+
+DEVICES = ["con", "prn", "aux", "nul", *(f"{name}{digit}" for name in ("com", "lpt") for digit in range(1, 10))]
 
 angles = st.floats(-math.pi, math.pi)
 
@@ -77,6 +87,11 @@ def test_a_comment_keeps_its_characters_but_for_spaces(text: str) -> None:
     assert comment(text).text.replace(" ", "") == text.replace(" ", "")
 
 
+@given(st.text(st.one_of(st.sampled_from("ab\n\r\u2028\x85\x0b"), st.characters())))
+def test_a_comment_has_one_line(text: str) -> None:
+    assert len(comment(text).text.splitlines()) == 1
+
+
 def test_comments_are_made_in_one_place() -> None:
     package = Path(articad.__file__).parent
     made = {path.name for path in package.rglob("*.py") if "etree.Comment(" in path.read_text(encoding="utf-8")}
@@ -107,3 +122,23 @@ def test_names_are_unique_and_changes_are_remembered() -> None:
 
     assert [names.claim(name) for name in ("a b", "a_b", "a-b", "c")] == ["a_b", "a_b_2", "a_b_3", "c"]
     assert names.changed == {"a b": "a_b", "a_b": "a_b_2", "a-b": "a_b_3"}
+
+
+@given(st.lists(st.one_of(st.text("aAbB_2"), st.sampled_from([*DEVICES, *(f" {name.upper()}" for name in DEVICES)]), st.text())))
+def test_no_two_files_are_one_on_a_system_that_ignores_case_and_none_is_a_device(wanted: list[str]) -> None:
+    names = FileNames()
+    claimed = [names.claim(one) for one in wanted]
+
+    assert len({name.lower() for name in claimed}) == len(claimed)
+    assert not [name for name in claimed if PureWindowsPath(f"{name}.stl").is_reserved()]
+
+
+@pytest.mark.parametrize("write", [write_mjcf, write_urdf, write_sdf])
+def test_exports_name_their_meshes_so_on_every_system(write: Callable[[Assembly], Bundle]) -> None:
+    base, *others = [block(name, (20, 30, 10 + at), root=frame()) for at, name in enumerate(["Arm", "arm", "con", "ARM", "nul"])]
+    joints = [declare.fixed(f"fixed_{at}", base["root"], part["root"]) for at, part in enumerate(others)]
+    assembly = Assembly.from_parts("names", parts=[base, *others], joints=joints, ground="Arm")
+    paths = [PureWindowsPath(path) for path in write(assembly).files]
+
+    assert len({str(path).lower() for path in paths}) == len(paths) > 5
+    assert not [path for path in paths if path.is_reserved()]
