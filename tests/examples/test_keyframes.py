@@ -6,11 +6,13 @@ A pixel shows the mover where it changes with the mover's colour: nothing that c
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from _pytest.mark import ParameterSet
 
 from articad.agents.pictures import KEYFRAMES, SIZE
 from articad.agents.pipeline import replay
@@ -29,7 +31,14 @@ DIFFERENT = 12  # of 255
 LEAST_SEEN = 40  # pixels of 320 × 320 that change with the mover's colour
 LEAST_CHANGED = 15  # pixels that differ from one keyframe to the next
 
+LONG = {"table_football", "stewart_platform", "desk_lamp", "metronome", "drill", "tempo"}  # a minute or more each
+
 pytestmark = pytest.mark.slow
+
+
+def named(paths: list[Path], name: Callable[[Path], str]) -> list[ParameterSet]:
+    """Return the paths as parameters; those that take long are for the long run."""
+    return [pytest.param(path, id=name(path), marks=[pytest.mark.soak] if name(path) in LONG else []) for path in paths]
 
 
 def in_colour(assembly: Assembly, moving: set[str], color: str) -> Assembly:
@@ -62,18 +71,18 @@ def sheets_that_show_nothing(assembly: Assembly) -> list[str]:
     return failing
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.name)
+@pytest.mark.parametrize("example", named(EXAMPLES, lambda path: path.name))
 def test_keyframes_of_an_example_show_what_moves(example: Path) -> None:
     assert sheets_that_show_nothing(Assembly.from_plan(AssemblyPlan.load(example), example / "parts")) == []
 
 
-@pytest.mark.parametrize("recording", RECORDED, ids=lambda path: path.parent.name)
+@pytest.mark.parametrize("recording", named(RECORDED, lambda path: path.parent.name))
 def test_keyframes_of_a_recorded_example_show_what_moves(recording: Path) -> None:
     with Run.view(recording) as run:
         assert sheets_that_show_nothing(assembly_of(run)) == []
 
 
-@pytest.mark.parametrize("recording", ANSWERED, ids=lambda path: path.name)
+@pytest.mark.parametrize("recording", named(ANSWERED, lambda path: path.name))
 def test_keyframes_of_a_recorded_run_show_what_moves(recording: Path, tmp_path: Path) -> None:
     made = replay(recording, out=tmp_path / "run")
     with Run.view(made.run.path) as run:
