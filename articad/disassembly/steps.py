@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -15,8 +16,12 @@ __all__ = ["AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow", "shown
 
 _SHOWN: Final = (0.14, 0.75)  # of the size of what is shown: least and largest distance of new parts from their place
 _FROM: Final = {
-    (0, 0, -1): "from above", (0, 0, 1): "from below", (1, 0, 0): "from the left", (-1, 0, 0): "from the right", (0, 1, 0): "from the front",
-    (0, -1, 0): "from behind",
+    (0, False): "from the left", (0, True): "from the right", (1, False): "from the front", (1, True): "from behind",
+    (2, False): "from below", (2, True): "from above",
+}  # fmt: skip
+_TOWARDS: Final = {
+    (0, False): "the left", (0, True): "the right", (1, False): "the front", (1, True): "the back", (2, False): "the bottom",
+    (2, True): "the top",
 }  # fmt: skip
 
 _UPWARDS: Final = 0.7  # vertical part of a unit vector, from which a part comes from below
@@ -111,10 +116,15 @@ def words_of(step: AssemblyStep) -> str:
 
 
 def _way(move: Move) -> str:
-    x, y, z = (round(value) for value in move.direction)
-    exact = max(abs(value - round(value)) for value in move.direction) < _AXIS
-    way = _FROM.get((x, y, z), "") if exact else ""
-    return way or "along ({:.3g}, {:.3g}, {:.3g})".format(*move.direction)
+    """Return where a part comes from, and towards what that direction leans if it is not along an axis: "from above, 28° towards the right"."""
+    back = -np.array(move.direction)
+    strongest = sorted((axis for axis in range(3) if abs(back[axis]) > _AXIS), key=lambda axis: -abs(back[axis]))
+    main, others = strongest[0], strongest[1:]
+    way = _FROM[main, bool(back[main] > 0)]
+    if not others:
+        return way
+    angle = math.degrees(math.atan2(float(np.linalg.norm(back[others])), abs(float(back[main]))))
+    return f"{way}, {angle:.3g}° towards {' and '.join(_TOWARDS[axis, bool(back[axis] > 0)] for axis in others)}"
 
 
 class StopRow(_Form):

@@ -22,7 +22,7 @@ from articad.geometry.mesh import TriMesh
 from articad.kernels.views import Segment
 from articad.papers.callouts import balloons, spots_of
 from articad.papers.items import Item
-from articad.papers.sheet import ROW, SMALL, DrawingSheet, Lettering, SheetLine, SheetPicture, text_width
+from articad.papers.sheet import ROW, SMALL, DrawingSheet, Lettering, SheetLine, SheetPicture, fitted, text_width
 from articad.render.camera import Camera
 from articad.render.pictures import printed
 from articad.render.raycast import BACKGROUND, cast
@@ -144,8 +144,8 @@ class _Manual:
         height = 2.5 if text_width(item.name, 2.5) <= room else 2.0
         sheet.texts += [
             Lettering(x + 2.5, y + 7.0, f"{item.number}", 3.5, bold=True),
-            Lettering(x + 9.0, y + 7.2, _fitting(item.name, room, height), height),
-            Lettering(x + 2.5, y + 3.0, _fitting(f"{size}{', bought' if item.supply == 'purchased' else ''}", _CELL[0] - 14.0, 2.0), 2.0),
+            Lettering(x + 9.0, y + 7.2, fitted(item.name, room, height), height),
+            Lettering(x + 2.5, y + 3.0, fitted(f"{size}{', bought' if item.supply == 'purchased' else ''}", _CELL[0] - 14.0, 2.0), 2.0),
             Lettering(x + _CELL[0] - 2.5, y + 2.8, f"{item.quantity} ×", 2.5, "end"),
         ]
         sheet.box("thin", x, y, x + _CELL[0], y + _CELL[1])
@@ -172,7 +172,7 @@ class _Manual:
             (14.0, 74.0, 14.0, 50.0, 30.0),
         )
         for place, line in enumerate(reversed(lines)):
-            sheet.texts.append(Lettering(_MARGIN, 18.0 + 4.0 * place, _fitting(line, PAGE[0] - 2 * _MARGIN, SMALL)))
+            sheet.texts.append(Lettering(_MARGIN, 18.0 + 4.0 * place, fitted(line, PAGE[0] - 2 * _MARGIN, SMALL)))
         sheet.told = {
             "page": "step",
             "step": step.number,
@@ -324,7 +324,7 @@ class _Manual:
         sheet = DrawingSheet(key, PAGE, 1.0)
         sheet.texts += [
             Lettering(_MARGIN, PAGE[1] - 21.0, title, 6.0, bold=True),
-            Lettering(PAGE[0] - _MARGIN, PAGE[1] - 21.0, _fitting(aside, 90.0, 3.0), 3.0, "end"),
+            Lettering(PAGE[0] - _MARGIN, PAGE[1] - 21.0, fitted(aside, 90.0, 3.0), 3.0, "end"),
         ]
         sheet.line("visible", _MARGIN, PAGE[1] - 24.5, PAGE[0] - _MARGIN, PAGE[1] - 24.5)
         return sheet
@@ -390,9 +390,3 @@ def _paragraph(sheet: DrawingSheet, words: str, y: float, height: float = 3.0) -
         y -= 1.7 * height
         line = word
     return y - 0.3 * height
-
-
-def _fitting(words: str, width: float, height: float) -> str:
-    while text_width(words, height) > width and len(words) > 4:
-        words = words[:-4] + "..."
-    return words

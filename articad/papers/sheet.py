@@ -324,7 +324,7 @@ class DrawingSheet:
         for label, words, x, y, wide in fields:
             self.box("thin", x0 + x, y1 - y - 10.0, x0 + x + wide, y1 - y)
             self.texts.append(Lettering(x0 + x + 1.2, y1 - y - 2.9, label, 1.8))
-            self.texts.append(Lettering(x0 + x + 1.2, y1 - y - 8.2, _fitted(words, wide - 2.4, LARGE), LARGE))
+            self.texts.append(Lettering(x0 + x + 1.2, y1 - y - 8.2, fitted(words, wide - 2.4, LARGE), LARGE))
         if first_angle:
             self._first_angle(x0 + BLOCK[0] - 14.0, y1 - 26.4)
 
@@ -354,7 +354,7 @@ class DrawingSheet:
         for index, cells in enumerate([head, *rows]):
             for cell, x, width in zip(cells, edges, widths, strict=False):
                 at = top - row * (index + 1) + 1.3
-                self.texts.append(Lettering(left + x + 0.8, at, _fitted(cell, width - 1.6, 2.0), 2.0, bold=index == 0))
+                self.texts.append(Lettering(left + x + 0.8, at, fitted(cell, width - 1.6, 2.0), 2.0, bold=index == 0))
 
     def clear_of(self, left: float, bottom: float, right: float, top: float) -> bool:
         """Return whether no line, text or dimension that is on the sheet yet lies in a rectangle, and it is inside the frame."""
@@ -406,10 +406,12 @@ def _crossing(text: Lettering, left: float, bottom: float, right: float, top: fl
     return box[0] < right and left < box[2] and box[1] < top and bottom < box[3]
 
 
-def _fitted(words: str, width: float, height: float) -> str:
-    """Return a text that fits into a width, shortened if it must be."""
+def fitted(words: str, width: float, height: float) -> str:
+    """Return a text that fits into a width; if it is shortened, both its ends stay, because names of parts differ at either."""
     if text_width(words, height) <= width:
         return words
-    while words and text_width(words + "...", height) > width:
-        words = words[:-1]
-    return words + "..."
+    for kept in range(len(words) - 1, 0, -1):
+        shorter = f"{words[: (kept + 1) // 2]}...{words[len(words) - kept // 2 :]}"
+        if text_width(shorter, height) <= width:
+            return shorter
+    return "..."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
@@ -15,7 +16,7 @@ from articad.assembly import Assembly
 from articad.connectors import SE3
 from articad.disassembly.order import assembly_order
 from articad.disassembly.poses import OtherPose
-from articad.disassembly.steps import AssemblyOrder, AssemblyStep, words_of
+from articad.disassembly.steps import AssemblyOrder, AssemblyStep, Move, words_of
 from articad.disassembly.ways import Ways
 from articad.errors import UnknownJointError
 from articad.geometry.part import Part
@@ -224,3 +225,27 @@ def test_a_part_that_only_comes_from_below_is_put_in_place_with_the_assembly_tur
     words = {step.parts[0]: words_of(step) for step in order.steps}
     assert words["plug"] == "Put plug in place: from below, with the assembly turned over or held up."
     assert words["lid"] == "Put lid in place: from above."
+
+
+SIDES = {"the left": (0, -1), "the right": (0, 1), "the front": (1, -1), "the back": (1, 1), "the bottom": (2, -1), "the top": (2, 1)}
+FROM = {"left": "the left", "right": "the right", "front": "the front", "behind": "the back", "below": "the bottom", "above": "the top"}
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_the_words_of_an_oblique_way_say_its_direction(seed: int) -> None:
+    """The side that is named first, turned by the angle towards the others, is where the part comes from, within the digits that are shown."""
+    rng = np.random.default_rng(seed)
+    back = rng.normal(size=3) * (rng.random(3) < (1.0 if seed % 3 else 0.7))
+    back = back / np.linalg.norm(back) if back.any() else np.array([0.0, 0.0, 1.0])
+    move = Move(direction=tuple((-back).tolist()), length_mm=10.0, apart_mm=10.0)
+    words = words_of(AssemblyStep(number=2, assembly="whole", parts=("pin",), onto=("base",), moves=(move,))).removesuffix(".")
+    words = words.removesuffix(", with the assembly turned over or held up").removeprefix("Put pin in place: from ")
+    main, _, rest = words.partition(", ")
+    axis, sign = SIDES[FROM[main.removeprefix("the ")]]
+    angle = math.radians(float(rest.partition("°")[0])) if rest else 0.0
+    towards = [SIDES[side] for side in rest.partition(" towards ")[2].split(" and ")] if rest else []
+
+    assert axis == int(np.abs(back).argmax())
+    assert sign * back[axis] == pytest.approx(math.cos(angle), abs=5e-3)
+    assert {(place, float(np.sign(back[place]))) for place, _ in towards} == set(towards)
+    assert {place for place, _ in towards} == {place for place in range(3) if abs(back[place]) > 1e-6} - {axis}

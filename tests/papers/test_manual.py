@@ -23,7 +23,7 @@ from articad.interference.body import body_of
 from articad.interference.overlap import overlap
 from articad.papers.items import items_of
 from articad.papers.manual import NEW, PAGE, manual_of
-from articad.papers.sheet import DrawingSheet
+from articad.papers.sheet import DrawingSheet, fitted, text_width
 from articad.papers.writers import written_pdf, written_svg
 from articad.report import Documents, report_page
 from tests.disassembly.test_order import BOX, INSIDE, LID, block
@@ -164,3 +164,16 @@ def test_the_command_writes_the_manual(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr("articad.commands.papers.loaded", lambda *_: boxed())
     assert cli.main(["manual", str(tmp_path), "--to", "html", "--out", str(tmp_path / "out"), "-q"]) == 0
     assert [file.name for file in (tmp_path / "out").iterdir()] == ["boxed_manual.html"]
+
+
+@pytest.mark.parametrize("width", [4.0, 10.0, 18.0, 30.0])
+@pytest.mark.parametrize("names", [("boom_ram_barrel", "boom_ram_rod"), ("bucket_ram_barrel", "bucket_ram_rod")])
+def test_a_shortened_name_fits_and_keeps_both_its_ends(names: tuple[str, ...], width: float) -> None:
+    for name in names:
+        shown = fitted(name, width, 2.5)
+        assert text_width(shown, 2.5) <= width
+        head, dots, tail = shown.partition("...")
+        assert name.startswith(head)
+        assert name.endswith(tail) or not dots
+    if width >= 18.0:
+        assert len({fitted(name, width, 2.5) for name in names}) == len(names)
