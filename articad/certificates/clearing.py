@@ -313,8 +313,10 @@ class _Search:
         p = self.a.corners[self.a.triangle[rows.a]]
         q = self.b.corners[self.b.triangle[rows.b]] @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
         # Candidate directions: both normals, the shortest connection, and the directions of `Slides` or of the turn.
+        # The normal of b's triangle is computed in its own frame, where it is recorded: that of a needle is decided by rounding.
         nearest, towards = shortest_between(p, q)
-        u = np.stack([_normals(p), _normals(q), towards], axis=1)
+        own = _normals(self.b.corners[self.b.triangle[rows.b]])
+        u = np.stack([_normals(p), (T[:, :3, :3] @ own[..., None])[..., 0], towards], axis=1)
         if self.slides is not None:
             u = np.concatenate([u, self.slides.directions(box, p, q)], axis=1)
         elif self.axis is not None:
@@ -334,7 +336,7 @@ class _Search:
         for which, kind in ((done & (first != 1), OF_A), (done & (first == 1), OF_B)):
             chosen = u[which, first[which]]
             if kind == OF_B:  # in the frame of b, so that a face has the same direction at every pose
-                chosen = _normals(self.b.corners[self.b.triangle[rows.b[which]]]) * np.where(ahead[which, 1], 1.0, -1.0)[:, None]
+                chosen = own[which] * np.where(ahead[which, 1], 1.0, -1.0)[:, None]
             self.trail.settle(rows.number[which], kind, chosen)
         left = np.flatnonzero(~done)
         touching = left[nearest[left] <= self.needed + self.epsilon]
