@@ -53,7 +53,7 @@ MARKS: Final = ("<!-- simulators: written by tests.export.judges -->", "<!-- end
 PYTHON: Final = os.environ.get("ARTICAD_ENGINES", "")
 SIMREADY: Final = os.environ.get("ARTICAD_SIMREADY", "")  # its rules would join those of the USD validator in one environment
 SECONDS: Final = 900.0
-HANG_SECONDS: Final = 7200.0  # of Newton, which bounds its own processor time
+HANG_SECONDS: Final = 14400.0  # of Newton, which bounds its own processor time
 PROFILE: Final = ("Robotics-Prop", "4.0.0")  # of SimReady Foundation
 ARGUED: Final = {
     "UsdAsciiPerformanceChecker": "USD is written as text, which can be read, compared and kept in Git; `usdcat -o x.usdc x.usda` packs it",
