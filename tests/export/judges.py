@@ -369,15 +369,16 @@ the one that kinematics computes for it. `articad sim` requires 99 %.
   such a loop would determine.
 - Newton runs its MuJoCo solver on the processor. Its readers, mimics, loops and collision pairs are its own. The model first stands in steps of that solver,
   held by springs. Then the model that the solver compiled is held, driven and let go as an MJCF is in MuJoCo: with gravity, by the forces that joints need
-  for the inertia that they feel through loops and couplings, at a pace that followers can keep; and its energy may not grow. Newton 1.8 closes a loop correctly
+  for the inertia that they feel through loops and couplings, at a pace that followers can keep, no stronger than is stable at the time step; and
+  its energy may not grow. The judge chooses the time step: where energy grows at 2 ms, 0.5 and 0.125 ms decide, at which integration errs less. Newton 1.8 closes a loop correctly
   only if it is closed where all joints are zero. From USD it reads both frames of a loop joint, but its solver computes the anchor on the
   child from the poses at zero (newton-physics/newton, issue 2293 and pull request 4248). *Anchors of loops corrected* means: the judge
   restored the anchors that Newton had read; otherwise, the loop is a different mechanism. From MJCF, Newton's reader drops the position of
   the second site of a `connect`, so that file is not judged.
-- steering_rack in Newton from USD: NewtonMimicAPI couples joints of one kind only, so the wheel does not drive the rack there, and nothing else moves the
-  linkage. The export states this loss.
+- steering_rack in Newton from USD: NewtonMimicAPI couples joints of one kind only, so the wheel does not drive the rack there, and each is driven by itself. The
+  export states this loss.
 - landing_gear_side in Newton from USD: Newton's solver closes loops softly, with a time constant of 0.02 s where the MJCF states 0.004 s. Its jack of 0.0102 kg feels
-  7.86 kg through the linkage and comes to 57.5 % of its range. From joints of UsdPhysics, Newton reads no stiffness. It reads `mjc:solref` from joints with
+  7.86 kg through the linkage and comes to 58.2 % of its range. From joints of UsdPhysics, Newton reads no stiffness. It reads `mjc:solref` from joints with
   MjcEqualityConnectAPI, which makes a point of a hinge. With that, the jack covers its range, but the model, whose USD states no damping, gains 61 % of its largest
   kinetic energy after release (16 % at a quarter of the time step). So the USD export states no stiffness of loops.
 - An empty cell, or a model that is not listed, was not judged. *(earlier)*: by an earlier version of the judge's program, or on an earlier export.
