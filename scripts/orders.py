@@ -148,6 +148,7 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
 
 
 LOOKED: Final[Mapping[str, str]] = {
+    "run:pliers": "The lever is one piece of two cheeks and the pins between them, which pass through closed eyes of the lower jaw and of the strut.",
     "metronome": "The case is one hollow piece around its nut and its barrel.",
     "scissor_lift": "Each frame is one piece of two arms and their cross rods, and the rods lie in closed eyes of the other frames, inside its own two arms.",
     "slider_crank": "The rod's eye is one closed piece about the crank pin, and the piston stays in its cylinder at every angle of the crank, so that the eye "
@@ -158,6 +159,12 @@ LOOKED: Final[Mapping[str, str]] = {
     "task:engine_radial": "Each rod comes off its pin to the front only, and is on a pin of its piston, which leaves its closed cylinder along that cylinder only.",
     "task:jack_scissor": "The screw turns on a neck in the bore of the trunnion, between its thread and its collar, which are wider; all is one piece.",
     "task:orrery_three": "The post is one piece with the base and with the sun at its top, which is wider than the eyes of the planets' arms on the post.",
+    "task:press_toggle": "Not confirmed: without lever and pull rod, the toggle folds to 57°, beyond its range of motion; the ram has then left the open end of its "
+    "rod, and ram and toggle come off to the front (no overlap in Booleans every 0.5° and 0.5 mm). The search moves a linkage within its ranges only.",
+    "task:sarrus_lifter": "Each leaf is between two lugs whose pins reach into its eye from both sides; lugs, pins and plate are one piece, below as above.",
+    "task:scotch_yoke_pump": "The crank pin is one piece with the disc below the block and with a head above it that is wider than the block's bore; the yoke's rods end "
+    "in posts on both sides, which are one piece with the base.",
+    "task:steering_rack": "The rod on which the rack bar slides passes through a closed bore and ends in posts on both sides, which are one piece with the chassis.",
 }
 """What was seen on the picture of each product that no order puts together."""
 

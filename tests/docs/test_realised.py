@@ -47,6 +47,20 @@ def test_the_page_is_that_of_the_stored_results(realised: ModuleType) -> None:
     assert realised.PAGE.read_text(encoding="utf-8") == realised.stored_page()
 
 
+def test_only_findings_that_the_meshes_stop_are_argued(realised: ModuleType, stored: dict[str, Any]) -> None:
+    stopped = {
+        (name, one["where"]) for name, row in stored["rows"].items() for one in row["findings"] if realised.verdict(one) == "stopped"
+    }
+    assert set(realised.ARGUED) <= stopped
+
+
+def test_a_finding_in_question_without_an_argument_is_told_as_such(realised: ModuleType) -> None:
+    tried = [{"way": "+z", "mm": 2.0, "free": False, "stop": "a", "pushed": []}]
+    finding = {"code": "W_JOINT_PARTLY_MADE", "where": "joints.j", "parts": ["a", "b"], "message": "", "tried": tried}
+    row = {"product": "", "programs": "now", "joints": {}, "findings": [finding], "seconds": 0.0}
+    assert "- `one`, `joints.j`: Not argued yet." in realised.page({"programs": "now", "planned": ["one"], "rows": {"one": row}})
+
+
 def test_every_stored_motion_agrees_with_its_distance(realised: ModuleType, stored: dict[str, Any]) -> None:
     for name, row in stored["rows"].items():
         for finding in row["findings"]:
