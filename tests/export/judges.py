@@ -177,15 +177,18 @@ def newton(assembly: Assembly, path: Path) -> EngineOutcome:
     kinds = {freedom.name: freedom.kind for freedom in freedoms}
     ties = [(freedom.name, freedom.follows.leader, False) for freedom in freedoms if freedom.follows is not None]
     ties += [(name, follows.leader, True) for _, name, follows in model.couplings]
+    drivers = driving(assembly)
     if path.suffix == ".usda":  # NewtonMimicAPI couples joints of one kind only, which the export states as a loss
-        ties = [tie for tie in ties if kinds[tie[0]] == kinds[tie[1]]]
+        lost = [tie for tie in ties if kinds[tie[0]] != kinds[tie[1]]]
+        drivers += tuple(name for name, _, looped in lost if not looped)  # a screw's turn and travel are driven apart
+        ties = [tie for tie in ties if tie not in lost]
     coupled = {name for name, _, _ in ties} | {leader for _, leader, looped in ties if looped}
     opened: set[str] = set()
     if path.suffix == ".urdf" and loops:  # a URDF leaves loops open, and what is coupled with their joints
         opened = following | coupled
     told = {
         "rest": {freedom.name: freedom.rest for freedom in freedoms},
-        "drivers": None if opened else driving(assembly),
+        "drivers": None if opened else drivers,
         "freedoms": {
             joint.joint.name: [freedom.name for freedom in sorted(joint.freedoms, key=lambda freedom: freedom.kind != "slide")]
             for joint in joints
@@ -375,8 +378,8 @@ the one that kinematics computes for it. `articad sim` requires 99 %.
   child from the poses at zero (newton-physics/newton, issue 2293 and pull request 4248). *Anchors of loops corrected* means: the judge
   restored the anchors that Newton had read; otherwise, the loop is a different mechanism. From MJCF, Newton's reader drops the position of
   the second site of a `connect`, so that file is not judged.
-- steering_rack in Newton from USD: NewtonMimicAPI couples joints of one kind only, so the wheel does not drive the rack there, and each is driven by itself. The
-  export states this loss.
+- steering_rack, jack_scissor and toggle_clamp in Newton from USD: NewtonMimicAPI couples joints of one kind only, so a wheel does not drive its rack there, and the
+  turn of a screw does not drive its travel. Each is driven by itself. The export states this loss.
 - landing_gear_side in Newton from USD: Newton's solver closes loops softly, with a time constant of 0.02 s where the MJCF states 0.004 s. Its jack of 0.0102 kg feels
   7.86 kg through the linkage and comes to 58.2 % of its range. From joints of UsdPhysics, Newton reads no stiffness. It reads `mjc:solref` from joints with
   MjcEqualityConnectAPI, which makes a point of a hinge. With that, the jack covers its range, but the model, whose USD states no damping, gains 61 % of its largest

@@ -11,6 +11,7 @@ import pytest
 from lxml import etree
 
 from articad.assembly import Assembly
+from articad.certificates.certificate import Certificate
 from articad.entry import read
 from articad.export.collisions import shape_model
 from articad.export.convex import manifold
@@ -23,7 +24,7 @@ from articad.geometry.shapes import box, cylinder, sphere
 from tests.assemblies import STEEL
 from tests.export import judges
 
-SEGMENTS = 192  # of round shapes
+SAGITTA = 0.005  # of the facets of round shapes, which the deflection of their mesh states [mm]
 QUICK = ("sewing_things_box", "four_bar", "toggle_clamp")
 MODELS = [*judges.example_names(), *judges.hard_names()]
 NAMES = [name if name in QUICK else pytest.param(name, marks=pytest.mark.soak) for name in MODELS]
@@ -35,11 +36,12 @@ def surface(shape: Shape) -> tuple[TriMesh, float]:
     if form is None or form.kind == "box":
         return shape.placed, 0.0
     r = form.size[0]
-    sagitta = r * (1 - math.cos(math.pi / SEGMENTS))
+    segments = max(24, math.ceil(math.pi / math.acos(max(0.0, 1 - SAGITTA / r))))
+    sagitta = r * (1 - math.cos(math.pi / segments))
     if form.kind == "cylinder":
-        return cylinder(r, form.size[1], SEGMENTS).transformed(shape.frame), sagitta
+        return cylinder(r, form.size[1], segments).transformed(shape.frame), sagitta
     assert form.kind == "sphere"
-    return sphere(r, SEGMENTS).transformed(shape.frame), 2 * sagitta
+    return sphere(r, segments).transformed(shape.frame), 2 * sagitta
 
 
 def with_pieces(assembly: Assembly) -> Assembly:
@@ -62,14 +64,20 @@ def pieced(part: Part, shapes: list[Shape]) -> Part:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_pieces_of_an_example_are_certified_as_its_solids_are(name: str) -> None:
-    """No contact is added: the same proof succeeds over the same ranges, alone and two joints at a time."""
+    """No contact is added: what is proven apart as solids is proven apart as pieces, over the same ranges, alone and two joints at a time."""
     assembly = read(judges.folder_of(name))
     certificate = with_pieces(assembly).certify()
-    objections = [str(finding) for finding in certificate.findings if finding.severity != "info"]
+    assert certificate.pairs
 
-    if objections:  # only what the solids do, too
-        assert objections == [str(finding) for finding in replace(assembly, fits={}).certify().findings if finding.severity != "info"]
-    assert {pair.parts for pair in certificate.pairs}
+    if left := unproven(certificate):  # only what the solids leave, too; pieces have no declared fits, so neither have these solids
+        assert left <= unproven(replace(assembly, fits={}).certify()), [str(finding) for finding in certificate.findings]
+
+
+def unproven(certificate: Certificate) -> set[frozenset[str]]:
+    """Return the pairs of parts that a certificate does not prove apart."""
+    return {
+        frozenset(pair.parts) for pair in certificate.pairs if pair.verdict in ("overlap", "unknown") or pair.strength.kind != "certified"
+    }
 
 
 def test_a_piece_outside_its_solid_is_seen() -> None:
