@@ -40,7 +40,7 @@ SIMULATORS = ("urdf", "mjcf", "sdf", "usd")
 WRITERS: dict[str, Callable[[Assembly], Bundle]] = {
     "urdf": write_urdf,
     "mjcf": write_mjcf,
-    "mjcf, hulls, servos": lambda assembly: write_mjcf(assembly, collision="hull", actuators=True),
+    "mjcf, hulls, servos": lambda assembly: write_mjcf(assembly, collision="hull", actuators="position"),
     "sdf": write_sdf,
     "usd": write_usd,
     "glb": write_glb,
