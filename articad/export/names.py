@@ -61,8 +61,10 @@ class FileNames(Names):
 
 
 def file_name(wanted: str) -> str:
-    """Return the beginning of a file's name for a name that anybody may have given: no folders, no hidden files, at most 60 characters."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", wanted).strip("._")[:60] or "model"
+    """Return the beginning of a file's name for a name that anybody may have given: no folders, hidden files or devices, at most 60 characters."""
+    name = re.sub(r"[^A-Za-z0-9_.-]+", "_", wanted).strip("._")[:60].rstrip(".") or "model"
+    first, dot, rest = name.partition(".")
+    return f"{first}_file{dot}{rest}" if _DEVICE.fullmatch(first) else name
 
 
 def valid_name(wanted: str) -> str:
