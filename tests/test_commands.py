@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import signal
 import subprocess
@@ -450,6 +451,23 @@ def test_the_parts_list_weighs_what_the_run_weighs(chest: Path, tmp_path: Path, 
     assert sum(row["total_kg"] for row in bill["items"]) == pytest.approx(built["assembly"]["mass_kg"], rel=1e-12)
     assert json.loads((tmp_path / "papers" / "chest_bom.json").read_text())["items"] == bill["items"]
     assert Run.view(tmp_path / "run").hashes() == before
+
+
+def test_no_drawing_of_a_part_has_the_file_of_the_assembly_or_of_a_page_of_the_manual(chest: Path, tmp_path: Path, report: Any) -> None:
+    plan = (chest / "plan.json").read_text()
+    for old, new in (("box", "assembly"), ("lid", "manual_01")):
+        plan = re.sub(rf"\b{old}\b", new, plan)
+        (chest / "parts" / f"{old}.py").rename(chest / "parts" / f"{new}.py")
+    (chest / "plan.json").write_text(plan)
+    out = tmp_path / "papers"
+    files = [
+        Path(file).name
+        for line in (("drawing",), ("manual", "--to", "svg"))
+        for file in report(line[0], chest, *line[1:], "--out", out)[1]["files"]
+    ]
+    assert len(set(files)) == len(files) == len([*out.iterdir()])
+    assert {"chest_assembly.svg", "chest_assembly_2.svg", "chest_manual_01.svg", "chest_manual_01_2.svg"} <= set(files)
+    assert Path(report("drawing", chest, "assembly", "--out", out)[1]["files"][0]).name == "chest_assembly_2.svg"
 
 
 def test_drawings_are_written_beside_the_run_and_say_what_they_show(chest: Path, tmp_path: Path, report: Any) -> None:

@@ -18,6 +18,7 @@ from articad.cli import main
 from articad.errors import ReadError, WriteError
 from articad.export.names import file_name
 from articad.kinematics.mechanism import Mechanism
+from articad.render.camera import VIEWS
 from articad.render.files import write_motion
 from articad.runs.run import Run, RunRequest
 from articad.simulation import examine
@@ -90,6 +91,16 @@ def test_a_film_stays_in_its_folder_whatever_the_joint_is_called(name: str, tmp_
     renamed = replace(assembly, mechanism=Mechanism(assembly.mechanism.parts, assembly.ground, joints, []))
     files = write_motion(renamed, name, folder, size=64)
     assert [(file.parent, file.stem, file.is_file()) for file in files] == [(folder, file_name(name), True)] * 2
+
+
+def test_no_film_has_the_files_of_another_joint_or_of_a_view(tmp_path: Path) -> None:
+    """A folder holds the films of all joints and the views; each is drawn by a run of its own."""
+    assembly, wanted = chain(6), ["a b", "a_b", "a/b", "front", "Iso"]
+    joints = [replace(joint, name=name) for joint, name in zip(assembly.mechanism.joints, wanted, strict=True)]
+    renamed = replace(assembly, mechanism=Mechanism(assembly.mechanism.parts, assembly.ground, joints, []))
+    files = [file.name.casefold() for name in wanted for file in write_motion(renamed, name, tmp_path, size=32)]
+    assert len({*files, *(f"{view}.png" for view in VIEWS)}) == 2 * len(wanted) + len(VIEWS)
+    assert {"a_b.png", "a_b.gif"} < set(files)
 
 
 def test_a_model_to_simulate_is_counted_before_it_is_parsed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 BILLS: Final = ("csv", "json", "xlsx")
 DRAWINGS: Final = ("svg", "pdf", "dxf")
 MANUALS: Final = ("pdf", "svg", "html")
+_ASSEMBLY: Final = "assembly"  # name of the drawing of all parts, after the product's name; no drawing of a part has it
 PURCHASED = argument("--purchased", metavar="NAMES", type=names, default=(), help="parts that are bought; * and ? are wildcards")
 PAPERS_OUT = argument("--out", metavar="DIR", default="papers", help="where to write (papers)")
 
@@ -138,7 +139,7 @@ def _bom(options: argparse.Namespace, terminal: Terminal) -> Report:
 )
 def _drawing(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands.steps import sandbox_level
-    from articad.export.names import file_name
+    from articad.export.names import file_name, file_names
     from articad.papers.drawing import drawings_of
     from articad.papers.sheet import A3, A4
     from articad.papers.writers import require_pdf, written_dxf, written_pdf, written_svg
@@ -150,14 +151,15 @@ def _drawing(options: argparse.Namespace, terminal: Terminal) -> Report:
     sheets = _drawn(drawings_of(assembly, options.part, purchased=options.purchased, size=size, sandbox=sandbox_level(options)), terminal)
     stem = file_name(assembly.name)
     files: dict[str, bytes] = {}
+    parts = file_names(assembly.product().parts, (_ASSEMBLY, *(_page(number) for number in range(1, 1000))))
     for sheet in sheets:
-        name = f"{stem}_{file_name(sheet.part or 'assembly')}"
+        name = f"{stem}_{parts[sheet.part] if sheet.part else _ASSEMBLY}"
         if "svg" in options.drawings:
             files[f"{name}.svg"] = written_svg(sheet)
         if "dxf" in options.drawings:
             files[f"{name}.dxf"] = written_dxf(sheet)
     if "pdf" in options.drawings:
-        files[f"{stem}{'' if options.part is None else f'_{file_name(options.part)}'}_drawings.pdf"] = written_pdf(sheets, assembly.name)
+        files[f"{stem}{'' if options.part is None else f'_{parts[options.part]}'}_drawings.pdf"] = written_pdf(sheets, assembly.name)
     return {
         "schema": "articad.drawings/1",
         "ok": True,
@@ -197,7 +199,7 @@ def _manual(options: argparse.Namespace, terminal: Terminal) -> Report:
     if "pdf" in options.manuals:
         files[f"{stem}_manual.pdf"] = written_pdf(sheets, f"{assembly.name}: assembly manual")
     if "svg" in options.manuals:
-        files |= {f"{stem}_manual_{number:02}.svg": written_svg(sheet) for number, sheet in enumerate(sheets, start=1)}
+        files |= {f"{stem}_{_page(number)}.svg": written_svg(sheet) for number, sheet in enumerate(sheets, start=1)}
     if "html" in options.manuals:
         files[f"{stem}_manual.html"] = _played(options.target, assembly, report).encode()
     summaries.print_order(report, terminal)
@@ -210,6 +212,11 @@ def _manual(options: argparse.Namespace, terminal: Terminal) -> Report:
         "files": _written(files, options, terminal),
         "findings": report["findings"],
     }
+
+
+def _page(number: int) -> str:
+    """Return the name of the file of a manual's page, after the product's name; no drawing of a part has it."""
+    return f"manual_{number:02}"
 
 
 def _drawn(sheets: Iterable[DrawingSheet], terminal: Terminal) -> list[DrawingSheet]:

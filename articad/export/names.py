@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 MAX_LENGTH = 120  # characters; files are named after parts, and file systems allow 255 bytes
 _DEVICE = re.compile("con|prn|aux|nul|com[0-9]|lpt[0-9]", re.IGNORECASE)  # with any suffix: Microsoft, Naming Files, Paths, and Namespaces
@@ -51,9 +51,9 @@ class Names:
 class FileNames(Names):
     """Names of files on every system: two never differ by case alone, and none is that of a device of Windows."""
 
-    def __init__(self) -> None:
-        super().__init__()
-        self._valid = _valid_file
+    def __init__(self, reserved: Iterable[str] = (), *, valid: Callable[[str], str] | None = None) -> None:
+        super().__init__(reserved)
+        self._valid = valid or _valid_file
 
     @staticmethod
     def _key(name: str) -> str:
@@ -61,10 +61,26 @@ class FileNames(Names):
 
 
 def file_name(wanted: str) -> str:
-    """Return the beginning of a file's name for a name that anybody may have given: no folders, hidden files or devices, at most 60 characters."""
-    name = re.sub(r"[^A-Za-z0-9_.-]+", "_", wanted).strip("._")[:60].rstrip(".") or "model"
+    """Return the beginning of a file's name for a name that anybody may have given: no folders, hidden files, options or devices, at most 60 characters.
+
+    Two names may get the same one; where several files of one kind share a folder, use `file_names`.
+    """
+    name = re.sub(r"[^A-Za-z0-9_.-]+", "_", wanted).lstrip("._-").rstrip("._")
     first, dot, rest = name.partition(".")
-    return f"{first}_file{dot}{rest}" if _DEVICE.fullmatch(first) else name
+    if _DEVICE.fullmatch(first):
+        name = f"{first}_file{dot}{rest}"
+    return name[:60].rstrip("._") or "model"
+
+
+def file_names(wanted: Iterable[str], reserved: Iterable[str] = ()) -> dict[str, str]:
+    """Return the beginning of a file's name for each name, as `file_name` does; a number follows where two would be alike or one is reserved.
+
+    Args:
+        wanted: All names, those included whose files another run writes: then a name gets the same file in each run.
+        reserved: Beginnings that other files of the folder have.
+    """
+    taken = FileNames(reserved, valid=file_name)
+    return {name: taken.claim(name) for name in sorted(dict.fromkeys(wanted), key=lambda name: file_name(name) != name)}
 
 
 def valid_name(wanted: str) -> str:

@@ -16,7 +16,7 @@ from articad.export.bundle import Bundle
 from articad.export.features import body_mesh, motion_and_mass
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.markup import child, document, number
-from articad.export.names import Names
+from articad.export.names import FileNames
 from articad.export.product import of_the_product
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
@@ -68,7 +68,7 @@ def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "f
         refuse(losses)
     files: dict[str, bytes] = {}
     findings = list(_clearances(assembly, process))
-    names = Names()
+    names = FileNames()
     for name, part in assembly.parts.items():
         mesh = body_mesh(part)
         if mesh is None:

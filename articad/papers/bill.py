@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.util import find_spec
@@ -24,16 +25,13 @@ COLUMNS: Final = (
 )  # fmt: skip
 _WIDTHS: Final = (6, 24, 9, 18, 10, 10, 9, 9, 9, 11, 50, 28, 40)  # characters
 _DATE: Final = datetime(2000, 1, 1, tzinfo=UTC)  # equal content gives equal bytes
-_FORMULA: Final = (
-    "=",
-    "+",
-    "-",
-    "@",
-    "\uff1d",
-    "\uff0b",
-    "\uff0d",
-    "\uff20",
-)  # first characters of texts that programs for tables would compute
+_LONGEST: Final = 32_767  # UTF-16 units of a cell: Microsoft, Excel specifications and limits
+_HIDDEN: Final = (
+    "\\s\"\x00-\x20\x7f-\xa0\xad\u034f\u061c\u115f\u1160\u17b4\u17b5\u180b-\u180f\u2000-\u200f\u2028-\u202f\u205f-\u206f\u2800\u3000"
+    "\u3164\ufe00-\ufe0f\ufeff\uffa0\ufff0-\ufffc\U0001bca0-\U0001bca3\U0001d173-\U0001d17a\U000e0000-\U000e0fff"
+)  # what a program for tables may pass over: quotation marks, and Unicode's White_Space, control characters and Default_Ignorable_Code_Point
+_COMPUTED: Final = "=+\\-@\u207a-\u207c\u208a-\u208c\u2212\ufe62\ufe63\ufe66\ufe6b\uff1d\uff0b\uff0d\uff20"  # and their other widths
+_FORMULA: Final = re.compile(f"((?:;|(?<![{_HIDDEN};])))([{_HIDDEN}]*+)(?=[{_COMPUTED}])")
 
 
 def rows_of(items: Sequence[Item]) -> list[tuple[Any, ...]]:
@@ -98,7 +96,7 @@ def bill_xlsx(assembly: Assembly, items: Sequence[Item]) -> bytes:
     for index, row in enumerate(rows, start=1):
         for column, (name, value) in enumerate(zip(COLUMNS, row, strict=True)):
             if isinstance(value, str):
-                sheet.write_string(index, column, value, text)
+                sheet.write_string(index, column, _shortened(value), text)
             elif value is not None:
                 sheet.write_number(index, column, value, mass if name.endswith("_kg") else size)
     last = len(rows) + 1
@@ -117,5 +115,27 @@ def _cell(value: Any) -> str:
         return ""
     if isinstance(value, float):
         return f"{value:.6g}"
-    words = str(value)
-    return f"'{words}" if words.lstrip().startswith(_FORMULA) or words[:1].isspace() else words
+    words = _FORMULA.sub(_guarded, str(value))
+    return f"'{words}" if words[:1].isspace() else words
+
+
+def _guarded(found: re.Match[str]) -> str:
+    """Return what stands before a character that begins a formula, with an apostrophe wherever a cell may begin there.
+
+    A cell begins with the text; and after a semicolon, a tab or the end of a line where another country's program separates cells by these.
+    """
+    end = 1 + max(found[2].rfind(sign) for sign in "\t\r\n")
+    first, last = (f"'{found[2][:end]}" if found.start() == 0 or found[1] else found[2][:end]), found[2][end:]
+    again = "'" if end else ""
+    return f"{found[1]}{first}{again}{last}"
+
+
+def _shortened(text: str) -> str:
+    """Return what a cell of a workbook holds of a text: all of it, or its first words and how much is left out."""
+    if len(text.encode("utf-16-le")) // 2 <= _LONGEST:
+        return text
+    told = " … ({} more characters, which CSV and JSON hold)"
+    room = _LONGEST - len(told.format(len(text)))
+    begun = text.encode("utf-16-le")[: 2 * room].decode("utf-16-le", "ignore")  # not half of a pair
+    begun = begun[: begun.rfind(" ")] if " " in begun else begun
+    return begun + told.format(len(text) - len(begun))

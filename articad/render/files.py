@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
 from articad.errors import ArticadError, did_you_mean
-from articad.export.names import file_name
+from articad.export.names import file_names
 from articad.render.camera import VIEWS
 from articad.render.pictures import Renderer, clean_motion, filmstrip, motion_gif, png, render_clean, render_motion, render_views
 
@@ -64,6 +64,8 @@ def write_views(
 def write_motion(assembly: Assembly, joint: str, folder: Path, *, size: int | tuple[int, int] = 320, clean: bool = False) -> list[Path]:
     """Write `<joint>.png`, a filmstrip, and `<joint>.gif`, an animation, into the folder; `clean` as in `render_clean`.
 
+    A number follows the joint's name if its files would have the names of another joint's, or of a view's.
+
     Raises:
         UnknownJointError: If the joint does not drive anything.
     """
@@ -74,7 +76,7 @@ def write_motion(assembly: Assembly, joint: str, folder: Path, *, size: int | tu
     else:
         strip = filmstrip(render_motion(assembly, joint, frames=_STRIP_FRAMES, size=width))
         animation = motion_gif(render_motion(assembly, joint, frames=_ANIMATION_FRAMES, size=width))
-    stem = file_name(joint)
+    stem = file_names(assembly.mechanism.driving_joints, VIEWS)[joint]  # a view's picture may lie in the same folder
     return [_written(folder / f"{stem}.png", png(strip)), _written(folder / f"{stem}.gif", animation)]
 
 

@@ -16,8 +16,18 @@ from articad.export.threemf import lying, write_3mf
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.geometry.shapes import box, cylinder, sphere
+from articad.kinematics import declare
 from articad.plan.resolve import Fit
-from tests.assemblies import all_joint_kinds, block, geared_pair
+from tests.assemblies import all_joint_kinds, block, frame, geared_pair
+
+
+def test_no_part_overwrites_another_where_case_does_not_count_and_none_is_a_device() -> None:
+    root = frame()
+    base, *others = parts = [block(name, (10, 10, 10), root=root) for name in ("Arm", "arm", "ARM", "con", "a b", "a_b")]
+    joints = [declare.fixed(part.name, base["root"], part["root"]) for part in others]
+    files = write_3mf(Assembly.from_parts("it", parts=parts, joints=joints, ground="Arm")).files
+    assert len({file.casefold() for file in files}) == len(parts)
+    assert "con.3mf" not in files
 
 
 def test_lib3mf_reads_every_part_without_a_warning(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import zipfile
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from lxml import etree
@@ -70,6 +71,17 @@ def test_two_parts_that_a_joint_says_are_bought_as_one_are_bought() -> None:
     assert {item.name for item in items_of(bought, ["top"]) if item.supply == "purchased"} == {"side", "top", "=peg"}
 
 
+def read_xlsx(content: bytes) -> tuple[dict[str, Any], list[str | None]]:
+    """Return the values of a workbook's first sheet by their places, and its formulas."""
+    with zipfile.ZipFile(io.BytesIO(content)) as book:
+        sheet = etree.fromstring(book.read("xl/worksheets/sheet1.xml"))
+        strings = ["".join(entry.itertext()) for entry in etree.fromstring(book.read("xl/sharedStrings.xml"))]
+    space = {"s": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
+    found = [(cell, value) for cell in sheet.iterfind(".//s:c", space) if (value := cell.findtext("s:v", namespaces=space)) is not None]
+    values = {cell.get("r"): strings[int(value)] if cell.get("t") == "s" else float(value) for cell, value in found}
+    return values, [cell.text for cell in sheet.iterfind(".//s:f", space)]
+
+
 def test_csv_and_xlsx_hold_the_same_cells_and_compute_nothing_that_a_name_says() -> None:
     pytest.importorskip("xlsxwriter")
     assembly = shelf()
@@ -80,22 +92,27 @@ def test_csv_and_xlsx_hold_the_same_cells_and_compute_nothing_that_a_name_says()
 
     content = bill_xlsx(assembly, items)
     assert content == bill_xlsx(assembly, items)
-    with zipfile.ZipFile(io.BytesIO(content)) as book:
-        sheet = etree.fromstring(book.read("xl/worksheets/sheet1.xml"))
-        strings = ["".join(entry.itertext()) for entry in etree.fromstring(book.read("xl/sharedStrings.xml"))]
-    space = {"s": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
-    formulas = [cell.text for cell in sheet.iterfind(".//s:f", space)]
+    values, formulas = read_xlsx(content)
     assert formulas == ["SUM(C2:C5)", "SUM(F2:F5)"]
-    values = {
-        cell.get("r"): (
-            strings[int(cell.findtext("s:v", namespaces=space))] if cell.get("t") == "s" else float(cell.findtext("s:v", namespaces=space))
-        )
-        for cell in sheet.iterfind(".//s:c", space)
-        if cell.find("s:v", space) is not None
-    }
     assert values["B5"] == "=peg"
     assert values["F6"] == pytest.approx(assembly.mass().mass)
     assert [values[f"C{row}"] for row in range(2, 6)] == [float(row[2]) for row in table[1:]]
+
+
+def test_a_text_that_is_too_long_for_a_cell_says_so() -> None:
+    """A workbook's cell holds 32,767 UTF-16 units; a writer drops what is longer, and then the whole cell is empty."""
+    pytest.importorskip("xlsxwriter")
+    assembly = shelf()
+    (first, second, *others) = items_of(assembly)
+    many = tuple(f"peg_{number}" for number in range(8000))
+    long = [replace(first, parts=many), replace(second, description="\U0001f642" * 20_000), *others]
+    values, _ = read_xlsx(bill_xlsx(assembly, long))
+    cell, described = values["M2"], values["K3"]
+    kept, _, told = cell.partition(" … ")
+    assert kept.split() == list(many[: len(kept.split())])
+    assert told == f"({len(' '.join(many)) - len(kept)} more characters, which CSV and JSON hold)"
+    assert described.startswith("\U0001f642" * 16_000)
+    assert all(32_600 < len(text.encode("utf-16-le")) / 2 <= 32_767 for text in (cell, described))
 
 
 def is_cut_from_edge_to_edge(cuts: Sequence[Cut]) -> bool:
