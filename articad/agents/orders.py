@@ -11,7 +11,8 @@ Decided by proof, from the bores, pins, sockets and balls of joints and from the
 
 What else is wrong about such a part may follow from that, so it waits for the script. A fault of two parts of which neither departs follows
 from the orders, so it goes to the designer. All faults of two parts go to the same author. Where a joint without
-bore and pin has faces that are neither planes, cylinders nor spheres, departures cannot be measured: its faults stay open.
+bore and pin has faces that are neither planes, cylinders nor spheres, departures cannot be measured: its faults stay open, but a fit goes
+to the designer if the overlap at rest of its parts has a root cause and goes there.
 """
 
 from __future__ import annotations
@@ -118,10 +119,22 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
         for one in several
         if one.where in by_fit
     }
-    return Findings(
+    told = [
         _addressed(finding, between.get(finding.where, finding.parts), assembly.resolved, departed, unmeasured, fitting)
         for finding in several
+    ]
+    return Findings(_with_its_overlap(finding, told) for finding in told)
+
+
+def _with_its_overlap(finding: Finding, several: Sequence[Finding]) -> Finding:
+    """Return a fit's finding, sent to the designer if the overlap at rest of the same two parts is; its numbers follow from that."""
+    if finding.code not in _FITS or finding.route == "design":
+        return finding
+    ordered = any(
+        other.code == "E_STATIC_OVERLAP" and other.route == "design" and other.cause is not None and set(other.parts) == set(finding.parts)
+        for other in several
     )
+    return replace(finding, route="design") if ordered else finding
 
 
 def _sources(resolved: ResolvedPlan) -> dict[str, str]:

@@ -138,6 +138,10 @@ def test_another_product_without_a_finding_is_an_escape_or_in_a_plan_another_val
     assert not row.named
 
 
+def test_a_fit_goes_where_the_overlap_of_its_parts_goes() -> None:
+    assert tried(planted("screw_jack_bottle", "axis_turned"), tools()).addressed
+
+
 def test_a_finding_about_another_part_names_nothing() -> None:
     fault = planted("hinge_butt_pin", "limit_order")
     assert not tried(replace(fault, names=frozenset({"another"})), tools()).named
