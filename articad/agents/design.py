@@ -224,9 +224,8 @@ def _instructions() -> str:
 
 def task(request: RunRequest, requirements: Requirements) -> str:
     """Return a request and its analysis as text."""
-    analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; see the pictures)"
-    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{analysis}\n```"
+    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{requirements.told()}\n```"
 
 
 def _dialect(request: RunRequest) -> str:

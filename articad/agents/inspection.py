@@ -250,7 +250,7 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
     """
     product = f"{asked_for(request, requirements)}\n\n{structure(assembly)}{_assumed(assembly)}"
     observations = _observed(assembly, [product, *wanted(request)], llm, number)
-    seen = json.dumps(observations.model_dump(mode="json"), indent=1, ensure_ascii=False)
+    seen = json.dumps(observations.model_dump(mode="json"), separators=(",", ":"), ensure_ascii=False)
     words = f"{product}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n```json\n{seen}\n```"
     judgement = ask(
         llm, "judge", f"judge/{number}/1", (system(prompt("judge")), user(words)), _judgement_of(assembly), schema=schema_of(Judgement)
@@ -360,9 +360,8 @@ def wanted(request: RunRequest) -> tuple[str | Image, ...]:
 
 def asked_for(request: RunRequest, requirements: Requirements) -> str:
     """Return a request and its analysis as text."""
-    analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; there were pictures)"
-    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{analysis}\n```"
+    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{requirements.told()}\n```"
 
 
 def structure(assembly: Assembly) -> str:

@@ -17,7 +17,6 @@ from articad.agents.line import Line, PlanAuthor
 from articad.agents.llm import Image, Message, Request, assistant, system, user
 from articad.agents.numbers import listed_numbers, short
 from articad.agents.part_builder import PartsError
-from articad.agents.part_writer import specification
 from articad.agents.pictures import part_picture
 from articad.agents.prompts import prompt, prompt_file, prompt_section
 from articad.agents.replies import ReplyForm, reader, schema_of
@@ -27,6 +26,7 @@ from articad.errors import OutputError, PlanError
 from articad.findings import Finding, Findings
 from articad.kernels.parts import RealisedPart
 from articad.plan.check import check_plan
+from articad.plan.entry import specification
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan, PartSpec
 

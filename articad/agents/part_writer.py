@@ -16,20 +16,19 @@ from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import objection, parse_script
 from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory, listed_cases
 from articad.assembly import DEFLECTION_MM
-from articad.connectors.connector import Connector
 from articad.errors import ArticadError, BuildError, ContractError, KernelError, OutputError
 from articad.findings import Finding, Findings
 from articad.findings.codes import CODES
 from articad.kernels.kernel import PartKernel
 from articad.kernels.parts import RealisedPart
-from articad.plan.brief import brief, build_digest
+from articad.plan.brief import build_digest
+from articad.plan.entry import specification
 from articad.plan.resolve import ResolvedPlan
 from articad.runs.run import Run
 
 ROLE: Final = "part"
 REPAIRS: Final = 3
 ATTEMPT_SCHEMA: Final = "articad.attempt/1"
-_DIGITS = 6  # decimals of mm in a prompt: the last bits of a cosine differ between machines
 _SHOWN_CHARACTERS = 6000  # of a failure; tracebacks contain only the script's own frames, so this limit is rarely reached
 _EXAMPLES: Final = {"build123d": "lid_left.txt", "freecad": "door_left_freecad.txt"}
 
@@ -255,20 +254,6 @@ def messages_after(first: tuple[Message, ...], previous: Attempt | None, *, anew
     return (*first, assistant(previous.said), user(f"{complaint}\n\nA picture of what the script had made:", previous.picture))
 
 
-def specification(resolved: ResolvedPlan, name: str) -> str:
-    """Return a part's entry in the plan as its author reads it, with numbers; other parts are not named."""
-    target, told = resolved.parts[name], brief(resolved, name)
-    lines = [f"name: {name}", f"material: {target.material.name}"]
-    lines += [f"{field}: {text}" for field, text in (("role", target.role), ("orientation", target.orientation)) if text]
-    lines += ["", "description:", target.description, "", "dimensions:" if told["dimensions"] else "dimensions: none"]
-    lines += [f"- {dimension} = {_number(value)}" for dimension, value in told["dimensions"].items()]
-    envelope = told["envelope_mm"]
-    lines += ["", f"envelope_mm: {'not given' if envelope is None else ' x '.join(map(_number, envelope))}", "", "connectors:"]
-    for connector, frame in told["connectors"].items():
-        lines.append(_connector_line(target.connectors[connector], frame))
-    return "\n".join(lines)
-
-
 def failure_text(error: KernelError | OutputError) -> str:
     """Return a failure as its author is told it: no path, no address, no time."""
     if isinstance(error, OutputError):
@@ -281,28 +266,6 @@ def failure_text(error: KernelError | OutputError) -> str:
 
 def _told(findings: Findings) -> str:
     return "\n".join(f"- {finding.message} {finding.hint}".rstrip() for finding in findings)
-
-
-def _connector_line(connector: Connector, frame: Mapping[str, Any]) -> str:
-    axes = [f"{axis} = {_vector(frame[axis])}" for axis in ("o", "z", "x") if axis != "x" or not connector.roll_free]
-    line = f"- {connector.name} ({connector.kind}): {', '.join(axes)}{'; x is free' if connector.roll_free else ''}; {connector.label}"
-    for joint in frame["joints"]:
-        limits = ", ".join(
-            f"{field} {bounds if isinstance(bounds, str) else _vector(bounds)}" for field, bounds in joint["limits"].items() if bounds
-        )
-        fit = f", fit {joint['fit']}" if joint["fit"] else ""
-        side = "the part moves" if joint["side"] == "child" else "the other part moves"
-        line += f"\n  {joint['type']} joint{f', {side}' if limits else ''}{f': {limits}' if limits else ''}{fit}"
-    return line
-
-
-def _vector(values: Any) -> str:
-    return f"({', '.join(map(_number, values))})" if isinstance(values, (list, tuple)) else _number(values)
-
-
-def _number(value: float) -> str:
-    rounded = round(value, _DIGITS)
-    return str(int(rounded)) if rounded == int(rounded) else repr(rounded)
 
 
 def _outcome(error: KernelError, mark: str, picture: Image | None) -> dict[str, Any]:

@@ -1,13 +1,13 @@
 """Recollection: what the agents ask the stores of experience and documentation, and the answers that a run keeps.
 
 Retrieved text is part of a prompt, so it is kept in the run: a replay needs no store, and a store that has grown since changes nothing.
-Cases and snippets are data to whoever reads them: they are shown as records, on lines that cannot end the section that contains them.
+Cases and snippets are data to whoever reads them: they are shown as they were written, each line behind a mark of quotation, so that none
+can end the section that contains it.
 """
 
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
@@ -27,7 +27,8 @@ from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 
-_LEAST: Final = 0.2  # similarity below which a case is not used; unrelated products are under 0.15
+_LEAST: Final = 0.6  # similarity of requests below which a case is of another kind of product; docs/decisions/017
+_LEAST_PART: Final = 0.9  # of specifications, which all resemble each other: parts of unrelated products reach 0.84
 _CASES: Final = 2  # of each kind, for a designer
 _EXAMPLES: Final = 1  # parts that an author of scripts is shown
 _DESIGN_CHARACTERS: Final = 4000  # of a case's design
@@ -54,9 +55,9 @@ class StoredMemory:
 
     def for_part(self, specification: str, kernel: str) -> Sequence[str]:
         """Return example parts with a similar specification, in the kernel's dialect, from good cases only."""
-        hits = self._store.like_part(specification, kernel, limit=_EXAMPLES, least=_LEAST)
+        hits = self._store.like_part(specification, kernel, limit=_EXAMPLES, least=_LEAST_PART)
         parts = [next(part for part in hit.case.parts if part.name == hit.item and part.kernel == kernel) for hit in hits]
-        return [f"Specification: {_quoted(part.specification)}\n\n{_fenced(part.script)}" for part in parts]
+        return [f"Specification:\n{_quoted(part.specification)}\n\n{_fenced(part.script)}" for part in parts]
 
 
 class _Names(ReplyForm):
@@ -169,21 +170,21 @@ def _wanted(run: Run) -> str:
 
 
 def _heuristic(case: Case) -> str:
-    mended = f"\nMended on the way: {_quoted('; '.join(case.repairs))}" if case.repairs else ""
-    return f"Asked for: {_quoted(case.prompt)}\nDesigned: {_quoted(case.design[:_DESIGN_CHARACTERS])}{mended}{_learned(case)}"
+    mended = f"\nMended on the way:\n{_quoted('; '.join(case.repairs))}" if case.repairs else ""
+    return f"Asked for:\n{_quoted(case.prompt)}\nDesigned:\n{_quoted(case.design[:_DESIGN_CHARACTERS])}{mended}{_learned(case)}"
 
 
 def _constraint(case: Case) -> str:
-    return f"Asked for: {_quoted(case.prompt)}\nFound at the end: {_quoted('; '.join(case.defects))}{_learned(case)}"
+    return f"Asked for:\n{_quoted(case.prompt)}\nFound at the end:\n{_quoted('; '.join(case.defects))}{_learned(case)}"
 
 
 def _learned(case: Case) -> str:
-    return f"\nLearned: {_quoted(' '.join(case.lessons))}" if case.lessons else ""
+    return f"\nLearned:\n{_quoted(' '.join(case.lessons))}" if case.lessons else ""
 
 
 def _quoted(text: str) -> str:
-    """Return text as one JSON string: whatever it contains, it stays within its quotation marks and on its line."""
-    return json.dumps(text, ensure_ascii=False)
+    """Return text as it was written, each of its lines behind a mark: whatever it contains, no line of it begins a section."""
+    return "\n".join(f"> {line}" for line in text.splitlines())
 
 
 def _fenced(script: str) -> str:

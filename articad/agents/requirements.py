@@ -83,6 +83,11 @@ class Requirements(ReplyForm):
         document: dict[str, Any] = self.model_dump(mode="json", by_alias=True, exclude=set() if self.open_ended else {"open_ended"})
         return document
 
+    def told(self) -> str:
+        """Return the analysis as a prompt holds it: JSON without spaces and without the name of its form."""
+        stated = {name: value for name, value in self.to_json().items() if name != "schema"}
+        return json.dumps(stated, separators=(",", ":"), ensure_ascii=False)
+
 
 def response_schema() -> dict[str, Any]:
     """Return the JSON schema of a reply: the form without its version, which a model need not state."""

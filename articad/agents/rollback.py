@@ -14,10 +14,10 @@ from typing import Any, Final, Literal
 from articad.agents.design import DOUBTS
 from articad.agents.llm import LLM, system, user
 from articad.agents.orders import source_of
-from articad.agents.part_writer import specification
 from articad.agents.prompts import prompt
 from articad.agents.replies import ReplyForm, ask, reader, schema_of, unusable
 from articad.findings import Finding, Findings
+from articad.plan.entry import specification
 from articad.plan.resolve import ResolvedPlan
 
 SCHEMA: Final = "articad.round/1"

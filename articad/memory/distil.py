@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 
 from articad.connectors import SE3
 from articad.kinematics.joints import Joint
 from articad.memory.case import Case, PartExample
-from articad.plan.brief import brief
+from articad.plan.entry import specification
 from articad.plan.resolve import ResolvedPlan
 
 
@@ -54,11 +53,6 @@ def case_of(
     )
 
 
-def specification(resolved: ResolvedPlan, part: str) -> str:
-    """Return the entry of a part as its author is given it, in few lines."""
-    return json.dumps(_rounded(brief(resolved, part)), ensure_ascii=False)
-
-
 def design_in_words(resolved: ResolvedPlan) -> str:
     """Return a plan's parts, joints and couplings, one per line, as an example for designers."""
     lines = [f"Ground: {resolved.ground}. Parameters: {', '.join(f'{name} = {value:.6g}' for name, value in resolved.parameters.items())}."]
@@ -82,11 +76,3 @@ def _joint_in_words(joint: Joint) -> str:
 
 def _point(frame: SE3) -> str:
     return f"({', '.join(f'{value:.4g}' for value in frame.translation)})"
-
-
-def _rounded(value: object) -> object:
-    if isinstance(value, float):
-        return float(f"{value:.6g}")
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    return [_rounded(item) for item in value] if isinstance(value, list) else value

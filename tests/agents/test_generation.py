@@ -11,10 +11,11 @@ from typing import Any
 import pytest
 
 from articad.agents.llm import LLM, Image, Request
-from articad.agents.part_writer import ROLE, Attempt, messages_after, opening, specification
+from articad.agents.part_writer import ROLE, Attempt, messages_after, opening
 from articad.agents.pipeline import generate
 from articad.agents.requirements import Requirements
 from articad.agents.retrieval import NoDocumentation, NoMemory, Recalled
+from articad.plan.entry import specification
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from tests.agents import stories
