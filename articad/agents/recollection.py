@@ -28,7 +28,7 @@ from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 
 _LEAST: Final = 0.6  # similarity of requests below which a case is of another kind of product; docs/decisions/017
-_LEAST_PART: Final = 0.9  # of specifications, which all resemble each other: parts of unrelated products reach 0.84
+_LEAST_PART: Final = 0.9  # of specifications, which all resemble each other: of two products, 99 pairs of 100 are below 0.84
 _CASES: Final = 2  # of each kind, for a designer
 _EXAMPLES: Final = 1  # parts that an author of scripts is shown
 _DESIGN_CHARACTERS: Final = 4000  # of a case's design
