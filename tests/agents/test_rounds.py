@@ -654,8 +654,8 @@ def test_what_is_not_seen_at_second_sight_never_counts_as_agreed(tmp_path: Path)
     run = made(tmp_path, llm)
 
     told = said(llm, "judge/1/1")
-    assert '"expected": "not seen"' in told
-    assert '"expected": true' not in told
+    assert '"expected":"not seen"' in told
+    assert '"expected":true' not in told
     verdict = run.verdict()
     assert verdict is not None
     assert [(finding["code"], finding["where"]) for finding in verdict["findings"]] == [("W_OBSERVER_UNSEEN", "joints.hinge")]
