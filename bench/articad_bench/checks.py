@@ -31,6 +31,7 @@ from articad_bench.likeness_checks import Arranged, Handed, Matter
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
+from articad_bench.spacing_checks import Links, Square
 from articad_bench.subject import Subject
 from articad_bench.whole_checks import Extent, Threads
 
@@ -42,6 +43,7 @@ _ASIDE: Final = {str(kind): {"x", "y"} for kind in JointType} | {
     str(JointType.PLANAR): {"z"},
     str(JointType.SLIDER): {"x", "y"},
 }  # directions in which a body must not be free to leave its joint
+SPAN_SLACK: Final = 1e-6  # deg or mm: what becomes of a range that is converted to radians and back
 STROKE: Final = 9  # values of a driver at which what follows it is measured
 CLOSED_MM: Final = 1e-6
 LEAST_WALL_MM: Final = 0.2  # a wire or a foil is no part
@@ -68,7 +70,7 @@ class JointWanted(PlanObject):
         span = subject.span(joint)
         if self.span == "endless":
             return math.isinf(span)
-        return self.span is None or self.span[0] <= span <= self.span[1]
+        return self.span is None or self.span[0] - SPAN_SLACK <= span <= self.span[1] + SPAN_SLACK
 
     def __str__(self) -> str:
         axis = "" if self.axis is None else f" about or along {_numbers(self.axis)}"
@@ -531,7 +533,9 @@ AnyCheck = Annotated[
     | Handed
     | Matter
     | Extent
-    | Threads,
+    | Threads
+    | Links
+    | Square,
     Field(discriminator="kind"),
 ]
 

@@ -56,6 +56,9 @@ if TYPE_CHECKING:
     argument("--case", metavar="NAME", dest="cases", action="append", default=[], help="faults: try this one again, PRODUCT:KIND or KIND"),
     argument("--repair", action="store_true", help="faults: also follow the hints, and build what results"),
     argument("--task", metavar="NAME", dest="names", action="append", default=[], help="only this one; may be repeated"),
+    argument(
+        "--sentences", action="store_true", help="list: which check holds each number of a task, and which sentence states each check"
+    ),
     argument("--kind", choices=["articulated", "static", "industrial", "hard"], default=None, help="only tasks of this kind"),
     argument(
         "--out",
@@ -211,7 +214,11 @@ def _spread(
 
 
 def _list(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad_bench.terminal_tables import print_sentences
+
     tasks = [task for _, task in _tasks(options)]
+    if options.sentences:
+        return print_sentences(tasks, terminal)
     rows = [(task.name, task.kind, task.modality, task.product, len(task.checks)) for task in tasks]
     terminal.table(["task", "kind", "asked by", "product", "checks"], rows)
     terminal.say(f"{len(tasks)} tasks.")

@@ -115,7 +115,9 @@ class Subject:
         return 1.0 if joint.type in _SLIDING else math.degrees(1.0)
 
     def span(self, joint: Joint) -> float:
-        """Return how far a joint is allowed to go by its main coordinate [deg or mm], inf for an endless one."""
+        """Return how far a joint is allowed to go by its main coordinate [deg or mm], inf for an endless one; a ball, from side to side."""
+        if joint.type is JointType.BALL:
+            return 2 * math.degrees(math.pi if joint.limits.cone is None else joint.limits.cone)
         width = (joint.limits.upper or (0.0,))[0] - (joint.limits.lower or (0.0,))[0]
         return width * self.per_unit(joint)
 

@@ -96,6 +96,7 @@ class Task(PlanObject):
         checks: All must hold.
         edit: A change afterwards.
         reference: Folder of a plan with part scripts that passes, relative to the task; or "example:NAME".
+        unheld: Stretches of the texts with numbers that no check holds, each with the reason; see `articad_bench.sentences`.
     """
 
     form: Literal["articad.task/1"] = Field(default="articad.task/1", alias="schema")
@@ -108,6 +109,7 @@ class Task(PlanObject):
     checks: tuple[AnyCheck, ...]
     edit: Edit | None = None
     reference: str | None = "reference"
+    unheld: dict[str, str] = Field(default_factory=dict)
 
     @property
     def modality(self) -> Literal["text", "image", "both"]:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final
+
+from articad_bench.sentences import sentences
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
+    from articad_bench.sentences import Number
+    from articad_bench.task import Task
 
 _WORDS: Final = 44  # characters of what failed
 
@@ -75,6 +80,37 @@ def print_data(report: Report, terminal: Terminal) -> Report:
         if row["error"]:
             terminal.say(f"{row['name']}: {row['error']}")
     return report
+
+
+def print_sentences(tasks: Sequence[Task], terminal: Terminal) -> Report:
+    """Print the table of sentences of tasks, and return it: it is in order if every number is held and every check stated."""
+    tables = {task.name: sentences(task) for task in tasks}
+    numbers = [(name, row) for name, table in tables.items() for row in table.numbers]
+    checks = [(name, row) for name, table in tables.items() for row in table.checks]
+    terminal.table(
+        ["task", "number", "sentence", "held by"],
+        [
+            (name, _in_unit(row.number), _short(row.number.sentence), "; ".join(row.checks) or row.reason or "NOTHING")
+            for name, row in numbers
+        ],
+    )
+    terminal.table(["task", "check", "stated by"], [(name, f"{row.kind}: {row.check}", row.stated or "NOTHING") for name, row in checks])
+    held, marked = sum(bool(row.checks) for _, row in numbers), sum(not row.checks and row.held for _, row in numbers)
+    unstated = sum(row.stated is None for _, row in checks)
+    terminal.say(
+        f"{len(numbers)} numbers: checks hold {held}, {marked} have a reason, {len(numbers) - held - marked} have neither. "
+        f"{len(checks)} checks: {unstated} are stated nowhere."
+    )
+    return {
+        "schema": "articad.bench-sentences/1",
+        "ok": held + marked == len(numbers) and not unstated,
+        "findings": [],
+        "tasks": [{"task": name} | asdict(table) for name, table in tables.items()],
+    }
+
+
+def _in_unit(number: Number) -> str:
+    return f"{number.value:g}" if number.unit == "count" else f"{number.value:g} {number.unit}"
 
 
 def effort(group: Mapping[str, Any]) -> str:

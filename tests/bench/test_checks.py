@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -10,13 +12,17 @@ from pydantic import TypeAdapter
 
 from articad import examples
 from articad.assembly import Assembly
+from articad.connectors import SE3
 from articad.geometry import Part, box
+from articad.kinematics.joints import Joint, JointLimits
 from articad.plan.schema import AssemblyPlan
 from articad_bench.checks import AnyCheck, Check
 from articad_bench.reference import reference
+from articad_bench.spacing_checks import spacings
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, tasks_in
 from tests.bench.wrong import VARIANTS, wrong_for
+from tests.kinematics.linkages import at, joint
 
 pytestmark = pytest.mark.slow
 
@@ -67,6 +73,8 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     *(("hinge_pintle_gate", bound("hinge_pintle_gate", kind)) for kind in ("matter", "arranged", "handed")),
     ("desk_lamp", {"kind": "extent", "side": "z", "mm": [300, 420]}),
     ("toggle_clamp", {"kind": "threads"}),
+    ("plate_motor_mount", {"kind": "square", "mm": 31}),
+    ("peaucellier_board", {"kind": "links", "mm": 70, "number": [4, 4]}),
 ]
 
 
@@ -107,3 +115,39 @@ def test_sides_that_are_nearly_alike_are_each_compared_with_their_own(wanted: tu
     check = form({"kind": "part_size", "mm": list(wanted)})
 
     assert check.judge(Subject(Assembly.from_parts("one", parts=[part], joints=[], ground="block"))).ok is fits
+
+
+def of(*joints: Joint) -> Subject:
+    """Return small boxes that are joined like this."""
+    names = dict.fromkeys(part for each in joints for part in (each.parent, each.child))
+    parts = [Part.from_mesh(name, box(5, 5, 5), density=1000) for name in names]
+    return Subject(Assembly.from_parts("joined", parts=parts, joints=list(joints), ground=parts[0].name))
+
+
+def test_lengths_of_links_are_between_the_lines_of_their_pins_and_the_centres_of_their_balls() -> None:
+    """A crank of 30 and a bar of 80; where along its line a connector lies, and a part that is fixed to the bar, change nothing."""
+    crank = joint("crank", "revolute", ("base", at(0)), ("crank", at(0)), limits=[(-9.0, 9.0)])
+    pin = joint("pin", "revolute", ("crank", at(30, 0, 17)), ("bar", at(0, 0, 4)), limits=[(-9.0, 9.0)])
+    held = joint("held", "fixed", ("bar", at(0)), ("head", at(0)))
+    ball = joint("ball", "ball", ("head", at(80, 0, -13)), ("foot", at(0)))
+    level = joint("level", "revolute", ("foot", SE3.rot_x(math.pi / 2) @ at(0)), ("shoe", at(0)), limits=[(-9.0, 9.0)])
+
+    found = spacings(of(crank, pin, held, ball, level))
+
+    assert {name: [round(mm, 9) for mm in apart] for name, apart in found.items()} == {"crank": [30.0], "bar": [80.0], "foot": [0.0]}
+
+
+def test_skew_pins_are_as_far_apart_as_their_lines() -> None:
+    upright = joint("upright", "revolute", ("base", at(0)), ("arm", at(0)), limits=[(-9.0, 9.0)])
+    across = joint("across", "revolute", ("arm", at(40, 25, 60) @ SE3.rot_y(math.pi / 2)), ("hand", at(0)), limits=[(-9.0, 9.0)])
+
+    assert spacings(of(upright, across)) == {"arm": [pytest.approx(25.0)]}
+
+
+def test_a_ball_goes_from_side_to_side_of_its_cone() -> None:
+    free = joint("ball", "ball", ("base", at(0)), ("head", at(0)))
+    tilting = replace(free, limits=JointLimits(cone=math.radians(8.0)))
+    check = {"kind": "joints", "joint": {"type": "ball", "span": [15, 17]}, "number": [1, 1]}
+
+    assert form(check).judge(of(tilting)).ok
+    assert not form(check).judge(of(free)).ok

@@ -112,8 +112,8 @@ def _none(_check: Check, _subject: Subject) -> Subject:
 
 
 def _larger(_check: Check, subject: Subject) -> Subject:
-    """Everything is half as large again: an inch for … well, a unit slip."""
-    factor = 1.5
+    """Everything is a thousand times as large, millimetres taken for metres: no other side has the length that is asked for."""
+    factor = 1000.0
 
     def scaled(T: SE3) -> SE3:
         return SE3.from_rotation(T.rotation, T.translation * factor)
@@ -372,6 +372,8 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "matter": _corners,
     "extent": _longer,
     "threads": _other_lead,
+    "links": _larger,
+    "square": _larger,
     "arranged": _one_aside,
     "handed": _mirror_image,
     "unchanged": _all_new,
