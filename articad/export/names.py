@@ -26,7 +26,7 @@ class Names:
     def __init__(self, reserved: Iterable[str] = (), *, any_text: bool = False) -> None:
         self._taken: set[str] = set(map(self._key, reserved))
         self._next: dict[str, int] = {}  # name -> the number that it gets next: counting from 2 each time would be quadratic
-        self._valid = str if any_text else valid_name
+        self._valid: Callable[[str], str] = str if any_text else valid_name
         self.changed: dict[str, str] = {}
 
     def claim(self, wanted: str) -> str:

@@ -27,7 +27,7 @@ _WIDTHS: Final = (6, 24, 9, 18, 10, 10, 9, 9, 9, 11, 50, 28, 40)  # characters
 _DATE: Final = datetime(2000, 1, 1, tzinfo=UTC)  # equal content gives equal bytes
 _LONGEST: Final = 32_767  # UTF-16 units of a cell: Microsoft, Excel specifications and limits
 _HIDDEN: Final = (
-    "\\s\"\x00-\x20\x7f-\xa0\xad\u034f\u061c\u115f\u1160\u17b4\u17b5\u180b-\u180f\u2000-\u200f\u2028-\u202f\u205f-\u206f\u2800\u3000"
+    '\\s"\x00-\x20\x7f-\xa0\xad\u034f\u061c\u115f\u1160\u17b4\u17b5\u180b-\u180f\u2000-\u200f\u2028-\u202f\u205f-\u206f\u2800\u3000'
     "\u3164\ufe00-\ufe0f\ufeff\uffa0\ufff0-\ufffc\U0001bca0-\U0001bca3\U0001d173-\U0001d17a\U000e0000-\U000e0fff"
 )  # what a program for tables may pass over: quotation marks, and Unicode's White_Space, control characters and Default_Ignorable_Code_Point
 _COMPUTED: Final = "=+\\-@\u207a-\u207c\u208a-\u208c\u2212\ufe62\ufe63\ufe66\ufe6b\uff1d\uff0b\uff0d\uff20"  # and their other widths

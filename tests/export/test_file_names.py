@@ -39,7 +39,24 @@ def test_no_file_is_called_like_an_option(name: str) -> None:
 
 def test_no_two_names_share_a_file_and_names_that_are_valid_keep_theirs() -> None:
     """Names that differ in what a file name cannot hold, in case, or after the 60th character; case alone is one file on Windows and macOS."""
-    wanted = ["a b", "a_b", "C_d", "c_d", "a/b", "a_b_2", "", ".", "x" * 70, "x" * 71, "con", "CON", "con_file", "\u00e4", "\u00f6", "assembly"]
+    wanted = [
+        "a b",
+        "a_b",
+        "C_d",
+        "c_d",
+        "a/b",
+        "a_b_2",
+        "",
+        ".",
+        "x" * 70,
+        "x" * 71,
+        "con",
+        "CON",
+        "con_file",
+        "\u00e4",
+        "\u00f6",
+        "assembly",
+    ]
     for seed in range(20):
         order = random.Random(seed).sample(wanted, len(wanted))
         files = file_names(order, ["assembly"])
