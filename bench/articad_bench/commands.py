@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from articad.commands.command import argument, command
 from articad.commands.options import ASKING, ENGINE, FORCE, SANDBOX, positive
 from articad.commands.steps import build_cache, sandbox_level
-from articad_bench.terminal_tables import print_data, print_judged, print_table
+from articad_bench.terminal_tables import print_data, print_judged, print_sentences, print_table
 
 if TYPE_CHECKING:
     from articad.agents.llm import Budget
@@ -214,11 +214,11 @@ def _spread(
 
 
 def _list(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad_bench.terminal_tables import print_sentences
+    from articad_bench.sentences import sentences
 
     tasks = [task for _, task in _tasks(options)]
     if options.sentences:
-        return print_sentences(tasks, terminal)
+        return print_sentences({task.name: sentences(task) for task in tasks}, terminal)
     rows = [(task.name, task.kind, task.modality, task.product, len(task.checks)) for task in tasks]
     terminal.table(["task", "kind", "asked by", "product", "checks"], rows)
     terminal.say(f"{len(tasks)} tasks.")

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Final, Literal
 
 from articad.kinematics.joints import JointType
@@ -156,6 +156,10 @@ class Sentences:
     numbers: tuple[NumberRow, ...]
     checks: tuple[CheckRow, ...]
     stale: tuple[str, ...]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the table as data of a report."""
+        return asdict(self)
 
 
 def sentences(task: Task) -> Sentences:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
-
-from articad_bench.sentences import sentences
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
-    from articad_bench.sentences import Number
-    from articad_bench.task import Task
+    from articad_bench.sentences import Number, Sentences
 
 _WORDS: Final = 44  # characters of what failed
 
@@ -82,9 +78,8 @@ def print_data(report: Report, terminal: Terminal) -> Report:
     return report
 
 
-def print_sentences(tasks: Sequence[Task], terminal: Terminal) -> Report:
-    """Print the table of sentences of tasks, and return it: it is in order if every number is held and every check stated."""
-    tables = {task.name: sentences(task) for task in tasks}
+def print_sentences(tables: Mapping[str, Sentences], terminal: Terminal) -> Report:
+    """Print the table of sentences of tasks, by name, and return it: it is in order if every number is held and every check stated."""
     numbers = [(name, row) for name, table in tables.items() for row in table.numbers]
     checks = [(name, row) for name, table in tables.items() for row in table.checks]
     terminal.table(
@@ -105,7 +100,7 @@ def print_sentences(tasks: Sequence[Task], terminal: Terminal) -> Report:
         "schema": "articad.bench-sentences/1",
         "ok": held + marked == len(numbers) and not unstated,
         "findings": [],
-        "tasks": [{"task": name} | asdict(table) for name, table in tables.items()],
+        "tasks": [{"task": name} | table.to_json() for name, table in tables.items()],
     }
 
 
