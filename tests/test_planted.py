@@ -62,7 +62,7 @@ show run --no-browser --out page.html
 edit run --set width=50 --out edited --no-pictures
 replay RECORDED --out again
 batch batch.json --out made --jobs 1
-bench list
+bench list --sentences
 bench draw --task arch_stone_seven --out drawn
 bench score nothing --task arch_stone_seven
 bench table nothing
