@@ -214,10 +214,10 @@ def _spread(
 
 
 def _list(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad_bench.sentences import sentences
-
     tasks = [task for _, task in _tasks(options)]
     if options.sentences:
+        from articad_bench.sentences import sentences
+
         return print_sentences({task.name: sentences(task) for task in tasks}, terminal)
     rows = [(task.name, task.kind, task.modality, task.product, len(task.checks)) for task in tasks]
     terminal.table(["task", "kind", "asked by", "product", "checks"], rows)
