@@ -25,6 +25,7 @@ from articad.auditing.report import Audit
 from articad.auditing.urdf_text import UrdfText
 from articad.auditing.wording import counted, listed
 from articad.errors import ReadError
+from articad.export.bundle import Bundle
 from articad.export.convex import hull_mesh, pieces_of
 from articad.export.markup import child, document, number, numbers, rpy, tidy
 from articad.export.mjcf import STL_TRIANGLES
@@ -105,11 +106,7 @@ def mend(
     if collision == "pieces":
         mender.divide(out if beside else None)
     files = _meshes(root, references, mended, out if beside else None) | mender.pieces
-    out.mkdir(parents=True, exist_ok=True)
-    for name, content in files.items():
-        (out / name).parent.mkdir(exist_ok=True)
-        (out / name).write_bytes(content)
-    mended.file.write_bytes(document(root))
+    Bundle({mended.file.name: document(root)} | files).write(out)
     mended.rest = audit_file(mended.file, replace(choices, root=out))
     return mended
 

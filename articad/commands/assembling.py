@@ -11,6 +11,7 @@ from articad.aliases import Fastening
 from articad.commands.command import argument, closest, command
 from articad.commands.options import SANDBOX, names
 from articad.commands.steps import loaded
+from articad.processes import scratch
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -57,7 +58,6 @@ def _order(options: argparse.Namespace, terminal: Terminal) -> Report:
     summaries.print_order(report, terminal)
     summaries.print_findings(report["findings"], terminal)
     if options.out:
-        Path(options.out).parent.mkdir(parents=True, exist_ok=True)
-        Path(options.out).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
+        scratch.write(Path(options.out), (json.dumps(report, indent=1) + "\n").encode())
         terminal.say(f"Order: {options.out}")
     return report

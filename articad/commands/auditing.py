@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from articad.commands.command import argument, command
 from articad.commands.options import SANDBOX, amount
 from articad.commands.steps import loaded
+from articad.processes import scratch
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -67,7 +68,7 @@ def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
     if options.report:
         from articad.auditing.page import audit_page
 
-        _write_page(Path(options.report), audit_page(audit, _model(options, terminal)))
+        scratch.write(Path(options.report), audit_page(audit, _model(options, terminal)).encode())
     _print_audit(audit, terminal, findings=not options.table)
     report = audit.to_json()
     if options.fix:
@@ -114,8 +115,7 @@ def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
     terminal.table(["engine", "loads", "speed at rest", "joints reach", "residual mm", "energy gain"], rows)
     terminal.findings(verdict.findings)
     if options.film and assembly is not None and (strip := _film(assembly, verdict.outcomes)):
-        Path(options.film).parent.mkdir(parents=True, exist_ok=True)
-        Path(options.film).write_bytes(strip)
+        scratch.write(Path(options.film), strip)
         report |= {"film": options.film}
         terminal.say(f"Film: {options.film}")
     terminal.say(f"{options.target}: {'stands and moves' if verdict.ok else 'NOT ok'}.")
@@ -165,7 +165,7 @@ def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: Audi
     if options.report:
         from articad.auditing.page import scoreboard_page
 
-        _write_page(Path(options.report), scoreboard_page(board))
+        scratch.write(Path(options.report), scoreboard_page(board).encode())
     if not options.table:
         for audit in board.audits:
             _print_audit(audit, terminal, findings=True)
@@ -217,8 +217,3 @@ def _print_mended(mended: Mended, terminal: Terminal) -> None:
     if mended.rest is not None:
         terminal.say(f"Left in {mended.file}:")
         _print_audit(mended.rest, terminal, findings=True)
-
-
-def _write_page(path: Path, page: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8")

@@ -160,6 +160,7 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.files import SCRIPT_BYTES, read_file
     from articad.kernels.cache import BuildCache
     from articad.kernels.choice import kernel_named
+    from articad.processes import scratch
     from articad.runs.adopt import adopt
 
     source, folder = Path(options.source), Path(options.out)
@@ -172,15 +173,14 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
         assembly, bundle = adopt(source, root=options.root, fuse=options.fuse, kernel=kernel, cache=BuildCache(), progress=tell)
     files = bundle.write(folder)
     if options.script is not None:
-        (folder / "source").mkdir()
         files.append(folder / "source" / Path(options.script).name)
-        files[-1].write_bytes(read_file(options.script, SCRIPT_BYTES))
+        scratch.write(files[-1], read_file(options.script, SCRIPT_BYTES))
     summaries.print_exports({"plan": bundle.to_json() | {"main": str(files[0])}}, terminal)
     report = bundle.to_json() | {"schema": "articad.adopt/1", "folder": str(folder), "files": [str(file) for file in files]}
     report |= {"parts": len(assembly.parts), "joints": len(assembly.joints), "freedoms": assembly.mechanism.mobility}
     if options.audit:
         found = _audit_of(source, options.root, terminal)
-        (folder / "audit.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
+        scratch.write(folder / "audit.json", json.dumps(found, indent=1).encode())
         report |= {"audit": found}
     terminal.say(f"Next: articad build {folder}")
     return report

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import re
-import shutil
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -35,6 +34,7 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
     import webbrowser
 
     from articad.export.names import file_name
+    from articad.processes import scratch
     from articad.report import Documents, report_page
     from articad.runs.record import assembly_of, documents_of, record_page
     from articad.runs.run import Run
@@ -47,12 +47,14 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
                 with Run.open(options.target) as run:
                     page = record_page(run, assembly)
             else:
-                page = _written(Path(options.out), report_page(assembly, documents))
+                page = Path(options.out)
+                scratch.write(page, report_page(assembly, documents).encode())
     else:
         assembly = loaded(options.target, options, terminal)
         with terminal.progress("Checking"):
             text = report_page(assembly, Documents(checks=assembly.check().to_json()))
-        page = _written(Path(options.out or Path(tempfile.mkdtemp(prefix="articad-")) / f"{file_name(assembly.name)}.html"), text)
+        page = Path(options.out or Path(tempfile.mkdtemp(prefix="articad-")) / f"{file_name(assembly.name)}.html")
+        scratch.write(page, text.encode())
     terminal.say(str(page))
     if options.browser and not webbrowser.open(page.resolve().as_uri()):
         terminal.say("No browser could be started; open the file yourself.")
@@ -68,6 +70,7 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
 )
 def _new(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.errors import WriteError
+    from articad.processes import scratch
 
     folder = Path(options.name)
     if not _NAME.fullmatch(folder.name):
@@ -80,18 +83,17 @@ def _new(options: argparse.Namespace, terminal: Terminal) -> Report:
     scripts = [file for file in sorted((source / "parts").iterdir()) if _kernel_of(file) == options.kernel]
     if not scripts:
         raise WriteError(f"The example {source.name} has no scripts for {options.kernel}.", path=str(source))
-    (folder / "parts").mkdir(parents=True, exist_ok=True)
     plan = (source / "plan.json").read_text(encoding="utf-8")
     old = json.loads(plan)["name"]
     plan = re.sub(rf'("name":\s*)"{re.escape(old)}"', rf'\1"{folder.name}"', plan, count=1)
     if options.kernel != "build123d" and '"kernel"' not in plan:
         plan = plan.replace("{", f'{{\n "kernel": "{options.kernel}",', 1)
-    (folder / "plan.json").write_text(plan, encoding="utf-8")
+    scratch.write(folder / "plan.json", plan.encode())
     for script in scripts:
-        shutil.copyfile(script, folder / "parts" / script.name)
+        scratch.write(folder / "parts" / script.name, script.read_bytes())
     if (source / "README.md").is_file():
         text = (source / "README.md").read_text(encoding="utf-8").replace("{name}", folder.name).replace("{folder}", str(folder))
-        (folder / "README.md").write_text(text.replace(f"examples/{source.name}", str(folder)), encoding="utf-8")
+        scratch.write(folder / "README.md", text.replace(f"examples/{source.name}", str(folder)).encode())
     files = sorted(str(file) for file in folder.rglob("*") if file.is_file())
     for file in files:
         terminal.say(file)
@@ -121,12 +123,6 @@ def _watch(options: argparse.Namespace, terminal: Terminal) -> Report:
         terminal.out.flush()
         built = watch(options, terminal, server, opened=webbrowser.open if options.browser else None)
     return {"schema": "articad.watch/1", "ok": True, "built": built, "findings": []}
-
-
-def _written(file: Path, text: str) -> Path:
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(text, encoding="utf-8")
-    return file
 
 
 def _kernel_of(script: Path) -> str | None:

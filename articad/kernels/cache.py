@@ -92,11 +92,8 @@ class BuildCache:
     def keep_failed(self, digest: str, files: dict[str, bytes]) -> Path:
         """Keep the files of a failed build for a picture; the latest of each digest."""
         folder = self.root / f"{digest}.failed"
-        folder.mkdir(parents=True, exist_ok=True)
         for name, content in files.items():
-            temporary = folder / f".{name}.{os.getpid()}"
-            temporary.write_bytes(content)
-            temporary.replace(folder / name)
+            scratch.write(folder / name, content)
         return folder
 
     def _discard(self, folder: Path) -> None:

@@ -7,9 +7,11 @@ log. The store is outside runs, in one folder, and is empty at first.
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 import sqlite3
+import stat
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -28,6 +30,7 @@ from articad.memory.embedding import Embedder, FloatArray, WordLlamaEmbedder
 
 VERSION: Final = 1
 FILE: Final = "experience.sqlite3"
+_BESIDE: Final = ("-wal", "-shm", "-journal")  # what SQLite keeps beside the file, by the endings of the names
 _PATIENCE_S: Final = 30.0  # for other writers; a transaction takes milliseconds
 _SCHEMA: Final = """
 create table cases (id text primary key, kind text not null, added real not null, content text not null);
@@ -240,6 +243,7 @@ class ExperienceStore:
         try:
             if writing:
                 self.folder.mkdir(parents=True, exist_ok=True)
+            _require_regular(path)
             exists = path.is_file()
             address = path if writing or exists else ":memory:"
             database = sqlite3.connect(address, timeout=_PATIENCE_S, isolation_level=None)
@@ -278,6 +282,18 @@ def _prepare(database: sqlite3.Connection, path: Path, *, writing: bool) -> None
             database.execute(statement)
         database.execute(f"pragma user_version = {VERSION}")
     database.execute("commit")
+
+
+def _require_regular(path: Path) -> None:
+    """Check that the database and what SQLite keeps beside it are regular files or missing: SQLite follows links.
+
+    Raises:
+        OSError: If one is a link, a folder, a pipe, a socket or a device.
+    """
+    for place in (path, *(path.with_name(path.name + ending) for ending in _BESIDE)):
+        with contextlib.suppress(FileNotFoundError, NotADirectoryError):
+            if not stat.S_ISREG(place.lstat().st_mode):
+                raise OSError(errno.EPERM, "it is a link, a folder, a pipe, a socket or a device, not a file", str(place))
 
 
 def _topic_of_parts(kernel: str) -> str:

@@ -1,4 +1,6 @@
-"""Scratch folders and files. Those of one process lie in one folder, which is locked while the process lives.
+"""Scratch folders and files, and the one way to write a file that a user, an agent or another process will find.
+
+The scratch folders of one process lie in one folder, which is locked while the process lives.
 
 A process that is killed leaves its folder behind, without the lock. The next process that starts removes it. What is written beside its
 target, to be renamed to it, is locked too: the next one that writes there removes what a killed one left.
@@ -8,8 +10,10 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import errno
 import os
 import shutil
+import stat
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -20,6 +24,7 @@ PREFIX: Final = "articad-scratch-"
 BESIDE: Final = ".articad-unfinished-"
 """What the names of files and folders begin with that are written beside their targets."""
 _TRIES: Final = 100
+_WRITING: Final = os.O_WRONLY | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 
 _swept: set[Path] = set()
 _homes: dict[int, Path] = {}  # by process: a fork makes a folder of its own
@@ -46,20 +51,23 @@ def sweep() -> None:
 def write(path: Path, content: bytes, *, durable: bool = False) -> None:
     """Write a file so that a reader finds the complete old or new one; its folder is made if it does not exist.
 
+    Only a regular file is replaced. Anything else in its place may be somebody else's: a link would lead to another file, a pipe would
+    block, a device would be lost.
+
     Args:
         path: The file.
         content: What it will hold.
         durable: Whether the new content is on the disk when this returns, so that it also survives a loss of power.
 
     Raises:
-        OSError: If it cannot be written; the old file is intact, and nothing is left.
+        OSError: If it cannot be written, or anything but a regular file is in its place; what was there is intact, and nothing is left.
     """
+    _require_replaceable(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     _sweep_beside(path.parent)
     temporary, lock = _locked(lambda: _new_file(path.parent))
     try:
-        temporary.write_bytes(content)
-        temporary.chmod(0o666 & ~_umask())
+        _fill(temporary, content)
         if durable:
             _sync(temporary)
         temporary.replace(path)
@@ -89,6 +97,33 @@ def folder_beside(target: Path) -> Iterator[Path]:
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
         _unlock(lock)
+
+
+def _require_replaceable(path: Path) -> None:
+    """Check that nothing or a regular file is at a path.
+
+    Raises:
+        OSError: If anything else is.
+    """
+    try:
+        mode = path.lstat().st_mode
+    except FileNotFoundError:
+        return
+    if stat.S_ISREG(mode):
+        return
+    kind = "a link" if stat.S_ISLNK(mode) else "a folder" if stat.S_ISDIR(mode) else "a pipe, a socket or a device"
+    raise FileExistsError(errno.EEXIST, f"{kind} is in the place of the file; remove it or name another file", str(path))
+
+
+def _fill(temporary: Path, content: bytes) -> None:
+    """Write the content of a new file, and give it the permissions that the user asks for."""
+    mode = 0o666 & ~_umask()
+    with os.fdopen(os.open(temporary, _WRITING), "wb") as stream:
+        stream.write(content)
+        if os.chmod in os.supports_fd:
+            os.chmod(stream.fileno(), mode)  # noqa: PTH101 - the open file, whatever its name leads to by now
+    if os.chmod not in os.supports_fd:
+        temporary.chmod(mode)
 
 
 def _sweep_beside(folder: Path) -> None:

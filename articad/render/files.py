@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypedDict
 
 from articad.errors import ArticadError, did_you_mean
 from articad.export.names import file_names
+from articad.processes import scratch
 from articad.render.camera import VIEWS
 from articad.render.pictures import Renderer, clean_motion, filmstrip, motion_gif, png, render_clean, render_motion, render_views
 
@@ -88,6 +89,5 @@ def _require_known(kind: str, names: Sequence[str], known: Iterable[str]) -> Non
 
 
 def _written(path: Path, content: bytes) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
+    scratch.write(path, content)
     return path

@@ -16,6 +16,7 @@ import re
 import secrets
 import shutil
 import stat
+import tempfile
 import threading
 import time
 import unicodedata
@@ -68,7 +69,6 @@ _RECALLED = "recalled"
 _BASE, _EDIT, _REVIEW = "base.json", "edit.json", "review.json"
 _VIEWS, _MOTION, _PAGE = "views", "motion", "report.html"
 _CERTIFICATE, _CERTIFIED = "certificate.json", "certificate"
-_PROBE = f"{scratch.BESIDE}probe"  # a name that a run removes when it is opened
 
 _IMAGE_FILE = re.compile(rf"{_IMAGES}/[0-9]{{1,6}}\.(png|jpg|gif|webp)")
 _SLUG_LENGTH = 40  # characters of the prompt in a run's name: enough to recognise it in a listing
@@ -187,6 +187,7 @@ class Run:
             strangers = _strangers(path)
         if strangers:
             raise _not_empty(path, strangers)
+        _require_plain(path)
         run = cls(path, request, _locked(path))
         run._sweep()
         described = request.to_json(_version() if version is None else version)
@@ -629,8 +630,7 @@ def _require_writable(path: Path) -> None:
     try:
         with _writing(path):
             path.mkdir(parents=True, exist_ok=True)
-            (path / _PROBE).touch()
-            (path / _PROBE).unlink()
+            tempfile.TemporaryFile(dir=path).close()
     finally:
         for folder in missing:
             with contextlib.suppress(OSError):

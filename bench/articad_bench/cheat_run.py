@@ -18,6 +18,7 @@ from articad.assembly import Assembly
 from articad.batches.pool import Call
 from articad.errors import ArticadError
 from articad.kernels.kernel import BuildCache, PartKernel
+from articad.processes import scratch
 from articad_bench.bindings import DETAIL
 from articad_bench.cheats import CHEATS, cheats_of
 from articad_bench.likeness_checks import handedness
@@ -292,9 +293,7 @@ def _save(out: Path, rows: Sequence[CheatRow], tasks: int) -> dict[str, Any]:
         "rows": [asdict(row) for row in rows],
     }
     for name, text in ((_RESULTS, json.dumps(report, indent=1, ensure_ascii=False) + "\n"), (_PAGE, page(report, rows))):
-        fresh = out / f"{name}.new"
-        fresh.write_text(text, encoding="utf-8")
-        fresh.replace(out / name)  # a run that is killed leaves whole files
+        scratch.write(out / name, text.encode())  # a run that is killed leaves whole files
     return report
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Self
 
+from articad.processes import scratch
 from articad_bench.fault_table import page, report, rows_of
 from articad_bench.fault_trial import Row, Tools, examined, programs, tried
 from articad_bench.faulty import PRODUCTS, Fault, Product, chosen
@@ -92,9 +93,7 @@ class FaultRun:
         tried_ones = [rows[fault.digest] for fault in self.faults if fault.digest in rows]
         told = report(tried_ones, alarms, planned=len(self.faults), examined_by=examined_by, judged_by=programs())
         for name, text in ((_RESULTS, json.dumps(told, indent=1) + "\n"), (_PAGE, page(told, KINDS))):
-            fresh = out / f"{name}.new"
-            fresh.write_text(text)
-            fresh.replace(out / name)  # a run that is killed leaves whole files
+            scratch.write(out / name, text.encode())  # a run that is killed leaves whole files
         return told
 
 

@@ -29,7 +29,6 @@ the notes, so that even with an empty prompt nothing that is checked has to be g
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -37,7 +36,9 @@ from typing import Any, Final, Literal
 from pydantic import Field, ValidationError
 
 from articad.errors import ReadError, did_you_mean
+from articad.files import RECORD_BYTES, read_file
 from articad.plan.fields import PlanObject
+from articad.processes import scratch
 from articad_bench.checks import AnyCheck, Judgement
 from articad_bench.subject import Subject
 
@@ -167,11 +168,10 @@ def write_task(task: Task, folder: Path, *, beside: Path) -> tuple[Path, Task]:
         folder: Where to.
         beside: Where its pictures are.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     for image in task.images:
-        shutil.copyfile(beside / image, folder / image)
+        scratch.write(folder / image, read_file(beside / image, RECORD_BYTES))
     text = task.model_dump_json(by_alias=True, exclude_defaults=True, indent=1)
-    (folder / "task.json").write_text(f"{text}\n", encoding="utf-8")
+    scratch.write(folder / "task.json", f"{text}\n".encode())
     return folder, task
 
 
