@@ -123,7 +123,7 @@ def test_the_search_below_finds_every_way_to_write_a_file(source: str) -> None:
 
 
 def test_only_one_function_writes_files_where_others_can_have_put_something() -> None:
-    packages = [Path(package.__file__).parent for package in (articad, articad_bench)]
+    packages = [Path(str(package.__file__)).parent for package in (articad, articad_bench)]
     files = [(file, package) for package in packages for file in sorted(package.rglob("*.py")) if file.parent.name != "parts"]
     found = {
         file.relative_to(package).as_posix(): names

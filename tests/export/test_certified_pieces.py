@@ -97,7 +97,9 @@ def test_round_shapes_have_their_true_size_within_the_stated_deflection(form: Pr
 
     assert part.solid is not None
     assert 0 < part.solid.deflection <= 2 * SAGITTA
-    assert part.solid.volume == pytest.approx(volume, rel=3 * part.solid.deflection / 5.0)  # dV/V = 3 dr/r of a sphere, 2 dr/r of a cylinder
+    assert part.solid.volume == pytest.approx(
+        volume, rel=3 * part.solid.deflection / 5.0
+    )  # dV/V = 3 dr/r of a sphere, 2 dr/r of a cylinder
 
 
 @pytest.mark.slow
