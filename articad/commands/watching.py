@@ -10,12 +10,12 @@ import time
 from collections.abc import Callable, Sequence
 from html import escape
 from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from articad.commands.checked import Check
+from articad.commands.page_server import BoundedHandler, BoundedServer
 from articad.files import PLAN_BYTES, read_file
 
 if TYPE_CHECKING:
@@ -31,7 +31,8 @@ _LINES: Final = 8  # findings of a failed build that the page shows
 class PageServer:
     """Serves a page and its version, on this machine only.
 
-    Requests that name another host are refused, so that a foreign site whose name resolves to this machine cannot read the page.
+    Requests that name another host are refused, so that a foreign site whose name resolves to this machine cannot read the page. Neither
+    can it show it in a frame. What sends nothing, or too slowly, keeps nobody out: `articad.commands.page_server`.
 
     Args:
         port: 0 for any that is free.
@@ -43,8 +44,8 @@ class PageServer:
         self.message = ""
         self.error: tuple[str, ...] = ()
         self.shown: tuple[Assembly, AssemblyPlan] | None = None
-        self._server = ThreadingHTTPServer(("127.0.0.1", port), _handler(self))
-        self._server.daemon_threads = True
+        self._encoded = ("", b"")  # the page and its bytes: who asks for it many times at once gets the same ones
+        self._server = BoundedServer(port, _handler(self))
         self._thread = threading.Thread(target=self._server.serve_forever, daemon=True)
 
     @property
@@ -66,6 +67,15 @@ class PageServer:
         self.page = report_page(assembly, Documents(checks=checks, plan=plan.dumps()), watch=version)
         self.version = version
 
+    def content(self) -> bytes:
+        """Return the page as it is sent, or the one before the first build has succeeded."""
+        page, content = self._encoded
+        if page is not self.page:
+            page = self.page
+            content = _bytes(page)
+            self._encoded = page, content
+        return content or _bytes(_waiting(self.error))
+
     def __enter__(self) -> Self:
         self._thread.start()
         return self
@@ -73,6 +83,11 @@ class PageServer:
     def __exit__(self, _kind: type[BaseException] | None, _error: BaseException | None, _traceback: TracebackType | None) -> None:
         self._server.shutdown()
         self._server.server_close()
+
+
+def _bytes(text: str) -> bytes:
+    """Encode a text; what a script says may hold half of a surrogate pair."""
+    return text.encode(errors="backslashreplace")
 
 
 def _waiting(error: Sequence[str]) -> str:
@@ -104,30 +119,26 @@ def lines_of(error: ArticadError, folder: Path) -> tuple[str, ...]:
     return (head, *(lines or said[1:_LINES]))
 
 
-def _handler(served: PageServer) -> type[BaseHTTPRequestHandler]:
-    class Handler(BaseHTTPRequestHandler):
+def _handler(served: PageServer) -> type[BoundedHandler]:
+    class Handler(BoundedHandler):
         def do_GET(self) -> None:
+            served._server.answer_begins(self.connection)  # noqa: SLF001 - of this module
             if self.headers.get("Host") not in {f"127.0.0.1:{served.port}", f"localhost:{served.port}"}:
                 self.send_error(HTTPStatus.FORBIDDEN)
             elif self.path == "/version":
-                self._answer("application/json", json.dumps({"version": served.version, "message": served.message, "error": served.error}))
+                told = {"version": served.version, "message": served.message, "error": served.error}
+                self._answer("application/json", json.dumps(told).encode())
             elif self.path == "/":
-                self._answer("text/html; charset=utf-8", served.page or _waiting(served.error))
+                self._answer("text/html; charset=utf-8", served.content())
             else:
                 self.send_error(HTTPStatus.NOT_FOUND)
 
-        def _answer(self, kind: str, text: str) -> None:
-            content = text.encode(errors="backslashreplace")  # what a script says may hold half of a surrogate pair
+        def _answer(self, kind: str, content: bytes) -> None:
             self.send_response(HTTPStatus.OK)
             self.send_header("Content-Type", kind)
             self.send_header("Content-Length", str(len(content)))
-            self.send_header("Cache-Control", "no-store")
-            self.send_header("X-Content-Type-Options", "nosniff")
             self.end_headers()
             self.wfile.write(content)
-
-        def log_message(self, *_: object) -> None:
-            """Log nothing."""
 
     return Handler
 
