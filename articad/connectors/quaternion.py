@@ -27,15 +27,13 @@ def multiply(p: FloatArray, q: FloatArray) -> FloatArray:
     """Return the Hamilton product p ⊗ q (first q, then p)."""
     px, py, pz, pw = p[..., 0], p[..., 1], p[..., 2], p[..., 3]
     qx, qy, qz, qw = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
-    return np.stack(
-        [
-            pw * qx + px * qw + py * qz - pz * qy,
-            pw * qy - px * qz + py * qw + pz * qx,
-            pw * qz + px * qy - py * qx + pz * qw,
-            pw * qw - px * qx - py * qy - pz * qz,
-        ],
-        axis=-1,
-    )
+    x = pw * qx + px * qw + py * qz - pz * qy
+    product = np.empty((*x.shape, 4))
+    product[..., 0] = x
+    product[..., 1] = pw * qy - px * qz + py * qw + pz * qx
+    product[..., 2] = pw * qz + px * qy - py * qx + pz * qw
+    product[..., 3] = pw * qw - px * qx - py * qy - pz * qz
+    return product
 
 
 def conjugate(q: FloatArray) -> FloatArray:

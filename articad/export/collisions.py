@@ -20,6 +20,7 @@ from articad.export.losses import Feature
 from articad.export.lowering import metres
 from articad.export.meshes import drawn
 from articad.export.once import once
+from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
 from articad.kernels.cache import BuildCache
 
@@ -124,11 +125,13 @@ def _formed(link: Link, kind: Collision, cache: BuildCache, known: dict[Any, Pie
     found = []
     for placed in link.collisions:
         pieces, shape = _pieces(link, placed, kind, cache, known), placed.shape
+        frames = SE3.stack([piece.frame for piece in pieces.pieces])
+        poses = shape.frame @ frames
         shapes = [
-            shape if piece.mesh is shape.mesh else Shape(piece.mesh, shape.frame @ piece.frame, shape.color, shape.name, piece.primitive)
-            for piece in pieces.pieces
+            shape if piece.mesh is shape.mesh else Shape(piece.mesh, poses[index], shape.color, shape.name, piece.primitive)
+            for index, piece in enumerate(pieces.pieces)
         ]
-        found.append(_Formed(pieces, tuple(shapes), metres(SE3.stack([piece.frame for piece in pieces.pieces]))))
+        found.append(_Formed(pieces, tuple(shapes), metres(frames)))
     return found
 
 
@@ -196,17 +199,23 @@ def _names_of_joints(assembly: Assembly) -> defaultdict[frozenset[str], list[str
 
 def _gap(assembly: Assembly, pair: Pair) -> float | None:
     """Return the distance of two parts at rest up to `TOUCHING_MM`, measured on the visual meshes; None if one has no solid."""
-    rest = once(assembly, "rest", assembly.mechanism.rest_poses)
-    bodies: dict[str, manifold3d.Manifold] = once(assembly, "drawn bodies", dict)
-    sides = []
-    for name in pair:
-        meshes = [drawn(shape.placed).mesh for shape in assembly.parts[name].collisions if shape.mesh.is_closed and shape.mesh.volume > 0]
-        for mesh in meshes:
-            if mesh.digest not in bodies:
-                bodies[mesh.digest] = manifold(mesh)
-        sides.append([bodies[mesh.digest].transform(rest[name].matrix[:3]) for mesh in meshes])
-    first, second = sides
+    first, second = (_drawn_bodies(assembly, name) for name in pair)
     return min((float(one.min_gap(other, TOUCHING_MM)) for one in first for other in second), default=None)
+
+
+def _drawn_bodies(assembly: Assembly, name: str) -> list[manifold3d.Manifold]:
+    """Return the closed visual meshes of a part at rest."""
+
+    def placed() -> list[manifold3d.Manifold]:
+        rest = once(assembly, "rest", assembly.mechanism.rest_poses)[name].matrix[:3]
+        closed = [shape for shape in assembly.parts[name].collisions if shape.mesh.is_closed and shape.mesh.volume > 0]
+        return [_body(assembly, drawn(shape.placed).mesh).transform(rest) for shape in closed]
+
+    return once(assembly, ("drawn bodies", name), placed)
+
+
+def _body(assembly: Assembly, mesh: TriMesh) -> manifold3d.Manifold:
+    return once(assembly, ("body", mesh.digest), lambda: manifold(mesh))
 
 
 def excuse(contact: HullOverlap) -> str:

@@ -212,6 +212,12 @@ def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool 
             text.
         part_frames: Give every link the frame of its part; if that cannot be the joint's frame, the joint has an `end`.
     """
+    taken = tuple(reserved)
+    question = ("lowered", taken, as_it_came, part_frames)
+    return once(assembly, question, lambda: _lower(assembly, taken, as_it_came=as_it_came, part_frames=part_frames))
+
+
+def _lower(assembly: Assembly, reserved: Iterable[str], *, as_it_came: bool, part_frames: bool) -> LoweredModel:
     mechanism = assembly.mechanism
     names = _ValidNames(assembly, reserved, any_text=as_it_came)
     loads = once(assembly, "loads", lambda: joint_loads(mechanism, assembly.parts))

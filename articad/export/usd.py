@@ -28,7 +28,7 @@ from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
 from articad.export.product import of_the_product
 from articad.geometry.mass import MassProperties
-from articad.geometry.mesh import TriMesh
+from articad.geometry.mesh import TriMesh, groups_of_equal
 from articad.geometry.mesh_files import linear_color
 from articad.geometry.part import Part, Shape
 from articad.kernels.cache import BuildCache
@@ -377,16 +377,19 @@ def _triangles(mesh: TriMesh, *, flat: bool) -> str:
         indices, interpolation = np.arange(len(normals)), "uniform"
     else:
         (_, normals, indices), interpolation = shaded(mesh), "faceVarying"
-    normals, places = np.unique(np.round(normals, _NORMAL_DIGITS) + 0.0, axis=0, return_inverse=True)
+    normals = np.round(normals, _NORMAL_DIGITS) + 0.0
+    places = groups_of_equal(normals[:, ::-1])  # in the order of x, then y, then z
+    distinct = np.empty((int(places.max(initial=-1)) + 1, 3))
+    distinct[places] = normals
     return "\n".join([
         f"    float3[] extent = [{_tuple(points.min(axis=0))}, {_tuple(points.max(axis=0))}]",
         f"    int[] faceVertexCounts = [{', '.join('3' * len(mesh.triangles))}]",
-        f"    int[] faceVertexIndices = [{', '.join(map(str, mesh.triangles.ravel().tolist()))}]",
+        f"    int[] faceVertexIndices = {mesh.triangles.ravel().tolist()}",
         f"    point3f[] points = {_points(points)}",
-        f"    normal3f[] primvars:normals = {_points(normals)} (",
+        f"    normal3f[] primvars:normals = {_points(distinct)} (",
         f'        interpolation = "{interpolation}"',
         "    )",
-        f"    int[] primvars:normals:indices = [{', '.join(map(str, places.ravel()[indices].tolist()))}]",
+        f"    int[] primvars:normals:indices = {places[indices].tolist()}",
         '    uniform token subdivisionScheme = "none"',
     ])  # fmt: skip
 

@@ -173,7 +173,7 @@ class TriMesh:
         Args:
             tol: Vertices closer than this are merged [mm]; 0 merges exactly equal ones. Pairs up to 2√3 tol apart may be merged too.
         """
-        group = _groups_of_equal(self.vertices) if tol <= 0 else _groups_within(self.vertices, tol)
+        group = groups_of_equal(self.vertices) if tol <= 0 else _groups_within(self.vertices, tol)
         first = np.full(int(group.max(initial=-1)) + 1, len(self.vertices), dtype=np.int64)
         np.minimum.at(first, group, np.arange(len(group)))
         order = np.argsort(first)  # keep the order of first appearance, so that the result does not depend on sorting by value
@@ -268,7 +268,7 @@ def _solid_integrals(vertices: FloatArray, triangles: IntArray) -> tuple[float, 
     return volume, origin + com, (inertia + inertia.T) / 2
 
 
-def _groups_of_equal(points: FloatArray) -> NDArray[np.int64]:
+def groups_of_equal(points: FloatArray) -> NDArray[np.int64]:
     """Number the points so that equal ones have the same number, `(V,)`."""
     rows = np.ascontiguousarray(points + 0.0)  # -0.0 becomes 0.0
     order = np.lexsort(rows.T)
@@ -290,7 +290,7 @@ def _groups_within(points: FloatArray, tol: float) -> NDArray[np.int64]:
     label = np.arange(len(points))
     for shift in np.ndindex(2, 2, 2):
         cell = np.floor(points / (2 * tol) + np.array(shift) / 2)
-        label = _joined(label, _groups_of_equal(cell))
+        label = _joined(label, groups_of_equal(cell))
     return np.unique(label, return_inverse=True)[1].astype(np.int64)
 
 

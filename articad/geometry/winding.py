@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from articad.arrays import FloatArray
+from articad.connectors.quaternion import cross
 
 __all__ = ["winding_numbers"]
 
@@ -23,7 +24,7 @@ def winding_numbers(points: FloatArray, corners: FloatArray) -> FloatArray:
     for row, point in enumerate(points):
         a, b, c = np.moveaxis(corners - point, 1, 0)
         la, lb, lc = (np.sqrt(np.einsum("ij,ij->i", v, v)) for v in (a, b, c))
-        numerator = np.einsum("ij,ij->i", a, np.cross(b, c))
+        numerator = np.einsum("ij,ij->i", a, cross(b, c))
         dot = np.einsum("ij,ij->i", a, b) * lc + np.einsum("ij,ij->i", b, c) * la + np.einsum("ij,ij->i", c, a) * lb
         total[row] = np.arctan2(numerator, la * lb * lc + dot).sum() / (2 * np.pi)
     return total

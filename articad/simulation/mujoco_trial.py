@@ -498,16 +498,22 @@ class Trial:
 
     def _contact(self, joint: int) -> str:
         """Return the two bodies with the largest contact force, one of them moved by the joint; "" if nothing touches."""
-        best, found = 0.0, ""
+        best, pair = 0.0, None
         force = np.zeros(6)
-        for index in range(self.data.ncon):
-            bodies = [int(self.model.geom_bodyid[geom]) for geom in self.data.contact[index].geom]
-            if not any(joint in self._joints_above(body) for body in bodies):
-                continue
-            mujoco.mj_contactForce(self.model, self.data, index, force)
+        bodies = self.model.geom_bodyid[self.data.contact.geom]
+        for index in np.flatnonzero(self._moves[joint][bodies].any(axis=1)):
+            mujoco.mj_contactForce(self.model, self.data, int(index), force)
             if abs(force[0]) > best:
-                best, found = abs(float(force[0])), " and ".join(self.model.body(body).name or f"body_{body}" for body in bodies)
-        return found
+                best, pair = abs(float(force[0])), bodies[index]
+        return "" if pair is None else " and ".join(self.model.body(int(body)).name or f"body_{body}" for body in pair)
+
+    @cached_property
+    def _moves(self) -> NDArray[np.bool_]:
+        """Whether a joint moves a body, `(joints, bodies)`."""
+        moves = np.zeros((self.model.njnt, self.model.nbody), dtype=bool)
+        for body in range(self.model.nbody):
+            moves[list(self._joints_above(body)), body] = True
+        return moves
 
     def _values(self) -> dict[str, float]:
         """Return the values of hinges and slides by name [rad, m]."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from functools import cached_property
+from typing import Final, NamedTuple
 
 import manifold3d
 import numpy as np
@@ -13,6 +14,24 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.winding import winding_numbers
 
 INSIDE_MM: Final = 1e-4  # by which rounding may move a piece outside the mesh
+
+
+class _Sides(NamedTuple):
+    """Sides of triangles in columns.
+
+    Attributes:
+        starts: First points of ab, ac and bc, `(3, 3, N)` [mm].
+        ways: From these to the other ends, `(3, 3, N)` [mm].
+        squares: Squared lengths, `(3, N)` [mm²], positive.
+        inner: Points of ab, bc and ca, `(3, 3, N)` [mm].
+        inward: Directions from ab, bc and ca inwards, `(3, 3, N)`.
+    """
+
+    starts: FloatArray
+    ways: FloatArray
+    squares: FloatArray
+    inner: FloatArray
+    inward: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,27 +67,34 @@ class Facets:
         inward = np.array([np.cross(normals, corners[:, (edge + 1) % 3] - corners[:, edge]) for edge in range(3)])
         return cls(corners, normals, (normals * corners[:, 0]).sum(axis=1), length / 2, inward)
 
+    @cached_property
+    def sides(self) -> _Sides:
+        """The sides of the triangles, prepared for `nearest`."""
+        a, b, c = np.ascontiguousarray(np.moveaxis(self.corners, 0, 2))
+        starts, ways = np.stack([a, a, b]), np.stack([b - a, c - a, c - b])
+        return _Sides(
+            starts, ways, np.maximum(_dot(ways, ways), 1e-300), np.stack([a, b, a]), np.ascontiguousarray(self.inward.swapaxes(1, 2))
+        )
+
 
 def nearest(facets: Facets, seed: FloatArray) -> FloatArray:
     """Return the point of each triangle nearest to the seed, `(N, 3)` (Ericson, Real-Time Collision Detection, 5.1.5)."""
-    a, b, c = facets.corners[:, 0], facets.corners[:, 1], facets.corners[:, 2]
-    ab, ac, bc = b - a, c - a, c - b
+    at, sides = seed[:, None], facets.sides
+
+    shares = np.clip(_dot(at - sides.starts, sides.ways) / sides.squares, 0.0, 1.0)
+    on_sides = sides.starts + shares[:, None] * sides.ways  # the nearest points of ab, ac and bc, `(3, 3, N)`
+    away = on_sides - at
+    best = np.take_along_axis(on_sides, _dot(away, away).argmin(axis=0)[None, None], axis=0)[0]
+
     inside = seed - (facets.normals @ seed - facets.offsets)[:, None] * facets.normals
-    best = _on_segment(a, ab, seed)
-    for start, way in ((a, ac), (b, bc)):
-        other = _on_segment(start, way, seed)
-        nearer = ((other - seed) ** 2).sum(axis=1) < ((best - seed) ** 2).sum(axis=1)
-        best = np.where(nearer[:, None], other, best)
-    within = facets.areas > 0
-    for start, inward in zip((a, b, a), facets.inward, strict=True):  # the edges ab, bc, ca
-        within &= ((inside - start) * inward).sum(axis=1) >= 0
-    return np.asarray(np.where(within[:, None], inside, best))
+    within = (facets.areas > 0) & (_dot(inside.T - sides.inner, sides.inward) >= 0).all(axis=0)
+    return np.where(within[:, None], inside, best.T)
 
 
-def _on_segment(start: FloatArray, way: FloatArray, point: FloatArray) -> FloatArray:
-    length = np.maximum((way * way).sum(axis=1), 1e-300)
-    share = np.clip(((point - start) * way).sum(axis=1) / length, 0.0, 1.0)
-    return np.asarray(start + share[:, None] * way)
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return a·b of vectors in columns, `(E, 3, N)` to `(E, N)`."""
+    products = a * b
+    return np.asarray(products[:, 0] + products[:, 1] + products[:, 2])
 
 
 def encloses(facets: Facets, point: FloatArray) -> bool:
