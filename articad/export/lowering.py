@@ -315,7 +315,8 @@ class _ValidNames:
 
     def __init__(self, assembly: Assembly, reserved: Iterable[str], *, any_text: bool) -> None:
         self._any_text = any_text
-        self._link_names, self._joint_names = Names(reserved, any_text=any_text), Names(any_text=any_text)
+        valid = str if any_text else valid_name
+        self._link_names, self._joint_names = Names(reserved, valid=valid), Names(valid=valid)
         self.links = {part: self._link_names.claim(part) for part in assembly.mechanism.parts}
         self.joints = {joint.name: self._joint_names.claim(joint.name) for joint in assembly.mechanism.joints}
         self._changed = [("parts", *item) for item in self._link_names.changed.items()]

@@ -20,13 +20,27 @@ def called(tag: str, names: Iterable[str]) -> str:
     return f"names of <{tag}>: {', '.join(names)}"
 
 
-class Names:
-    """Assigns valid names, each once, and none that is reserved."""
+def valid_name(wanted: str) -> str:
+    """Return the name with everything but ASCII letters, digits and underscores replaced."""
+    plain = unicodedata.normalize("NFKD", wanted).encode("ascii", "ignore").decode()
+    name = re.sub(r"[^A-Za-z0-9_]+", "_", plain)[:MAX_LENGTH]
+    if name != wanted:
+        name = name.strip("_")
+    return name if name[:1].isalpha() else f"n{name}"
 
-    def __init__(self, reserved: Iterable[str] = (), *, any_text: bool = False) -> None:
+
+class Names:
+    """Assigns valid names, each once, and none that is reserved.
+
+    Args:
+        reserved: Names that are taken.
+        valid: Returns a valid name for any text; `str` where every text is valid.
+    """
+
+    def __init__(self, reserved: Iterable[str] = (), *, valid: Callable[[str], str] = valid_name) -> None:
         self._taken: set[str] = set(map(self._key, reserved))
         self._next: dict[str, int] = {}  # name -> the number that it gets next: counting from 2 each time would be quadratic
-        self._valid: Callable[[str], str] = str if any_text else valid_name
+        self._valid = valid
         self.changed: dict[str, str] = {}
 
     def claim(self, wanted: str) -> str:
@@ -48,12 +62,16 @@ class Names:
         return name
 
 
+def _valid_file(wanted: str) -> str:
+    name = valid_name(wanted)
+    return f"{name}_file" if _DEVICE.fullmatch(name) else name
+
+
 class FileNames(Names):
     """Names of files on every system: two never differ by case alone, and none is that of a device of Windows."""
 
-    def __init__(self, reserved: Iterable[str] = (), *, valid: Callable[[str], str] | None = None) -> None:
-        super().__init__(reserved)
-        self._valid = valid or _valid_file
+    def __init__(self, reserved: Iterable[str] = (), *, valid: Callable[[str], str] = _valid_file) -> None:
+        super().__init__(reserved, valid=valid)
 
     @staticmethod
     def _key(name: str) -> str:
@@ -81,17 +99,3 @@ def file_names(wanted: Iterable[str], reserved: Iterable[str] = ()) -> dict[str,
     """
     taken = FileNames(reserved, valid=file_name)
     return {name: taken.claim(name) for name in sorted(dict.fromkeys(wanted), key=lambda name: file_name(name) != name)}
-
-
-def valid_name(wanted: str) -> str:
-    """Return the name with everything but ASCII letters, digits and underscores replaced."""
-    plain = unicodedata.normalize("NFKD", wanted).encode("ascii", "ignore").decode()
-    name = re.sub(r"[^A-Za-z0-9_]+", "_", plain)[:MAX_LENGTH]
-    if name != wanted:
-        name = name.strip("_")
-    return name if name[:1].isalpha() else f"n{name}"
-
-
-def _valid_file(wanted: str) -> str:
-    name = valid_name(wanted)
-    return f"{name}_file" if _DEVICE.fullmatch(name) else name

@@ -113,7 +113,7 @@ def _groups(assembly: Assembly, *, flat: bool) -> list[_Group]:
         members.setdefault(body[name], []).append(name)
     if flat or len(members) < 2:
         return [_Group("", tuple(shaped))]
-    names = Names(assembly.parts, any_text=True)
+    names = Names(assembly.parts, valid=str)
     return [_Group(names.claim(f"{parts[0]}_group") if len(parts) > 1 else "", tuple(parts)) for parts in members.values()]
 
 
