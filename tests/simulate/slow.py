@@ -10,6 +10,7 @@ import pytest
 
 from articad.processes import launcher
 
+_NO_LIMITS = launcher.Limits()
 _FOR_EVER = "import signal\nwhile True: signal.pause()"
 
 
@@ -23,7 +24,7 @@ def take(monkeypatch: pytest.MonkeyPatch, process: str, needs: float) -> None:
     """
     start = launcher.start
 
-    def started(words: Sequence[str], *, module: str | None = None, limits: launcher.Limits, **more: Any) -> launcher.Child:
+    def started(words: Sequence[str], *, module: str | None = None, limits: launcher.Limits = _NO_LIMITS, **more: Any) -> launcher.Child:
         if module != process or (limits.seconds is not None and limits.seconds >= needs):
             return start(words, module=module, limits=limits, **more)
         return start([sys.executable, "-c", _FOR_EVER], limits=launcher.Limits(seconds=0.02), **more)
