@@ -28,7 +28,7 @@ from articad.export.losses import Feature, kept_losses, losses_of
 from articad.export.lowering import lower
 from articad.export.meshes import MeshFiles
 from articad.export.metadata import dumps, records
-from articad.export.names import Names
+from articad.export.names import FileNames, Names
 from articad.geometry.part import Part
 from articad.kernels.freecad_file import bounded
 from articad.kernels.trees import PartTree
@@ -58,6 +58,7 @@ _STEP = 1e-3  # relative change of a parameter, to see what it turns
 PLACED_MM, PLACED_RAD = 1e-7, 1e-10  # by which a placement may differ from its expression
 BILL_COLUMNS = {"Material": "ArticadMaterial", "Mass": "ArticadMass", "Description": "Label2"}
 """Columns that FreeCAD's bill of materials has beside its own, and the properties of parts that they show."""
+_TAKEN = ("Assembly", "Parameters", "Joints", "GroundedJoint", "Dimensions")  # names of objects that every document may have
 _FROZEN = ("shape", "mesh", "empty")  # kinds of geometry without a feature tree
 
 
@@ -82,11 +83,10 @@ class Job:
         self._told += [Feature("fastening", f"joints.{joint.name}") for joint in assembly.joints if joint.fastening]
         self.model = lower(assembly)
         self.name = self.model.name
-        names = Names()
-        for taken in ("Assembly", "Parameters", "Joints", "GroundedJoint", "Dimensions"):
-            names.claim(taken)
+        names = Names(_TAKEN)
         self.names = names
-        self.objects = {name: names.claim(name) for name in assembly.parts}
+        files = FileNames(_TAKEN)  # an object of a part also names a file of its own: here, and where each part has its document
+        self.objects = {name: names.claim(files.claim(name)) for name in assembly.parts}
         self.systems = {
             (name, connector): names.claim(f"{self.objects[name]}__{connector}")
             for name, part in assembly.parts.items()
@@ -242,23 +242,28 @@ class Job:
                 "plane": {"point": point, "normal": normal},
                 "expressions": (expressions := self.followed.mirror(name)),
                 "reflected": _reflected(normal, turns="Normal" in expressions),
-            } | ({} if self.features else {"file": self._file(realised.built.folder / "part.brep", f"{name}.brep")})
+            } | ({} if self.features else {"file": self._file(realised.built.folder / "part.brep", f"{self.objects[name]}.brep")})
         document = realised.built.folder / "part.FCStd"
         if document.is_file() and self.features:
             seated = realised.built.folder / "seat.json"
             seat = json.loads(seated.read_text()) if seated.is_file() else _seven(SE3.identity())
-            return {"kind": "body", "file": self._file(document, f"{name}.FCStd"), "body": "Body", "seat": seat}
+            return {"kind": "body", "file": self._file(document, f"{self.objects[name]}.FCStd"), "body": "Body", "seat": seat}
         tree = self.trees.get(name)
         if tree is not None and tree.document is not None:
-            return {"kind": "body", "file": self._file(tree.document, f"{name}.FCStd"), "body": "Body", "seat": _seven(tree.seat)}
+            return {
+                "kind": "body",
+                "file": self._file(tree.document, f"{self.objects[name]}.FCStd"),
+                "body": "Body",
+                "seat": _seven(tree.seat),
+            }
         why = "" if tree is None else tree.reason
         self._tell("freecad.features" if document.is_file() else "freecad.brep", f"parts.{name}", why)
-        return {"kind": "shape", "file": self._file(realised.built.folder / "part.brep", f"{name}.brep"), "why": why}
+        return {"kind": "shape", "file": self._file(realised.built.folder / "part.brep", f"{self.objects[name]}.brep"), "why": why}
 
     def _loose(self, name: str, part: Part) -> Json:
         """Return the geometry of a part that no script built."""
         if part.solid is not None and part.solid.brep is not None and part.solid.brep.is_file():
-            return {"kind": "shape", "file": self._file(part.solid.brep, f"{name}.brep")}
+            return {"kind": "shape", "file": self._file(part.solid.brep, f"{self.objects[name]}.brep")}
         if part.mesh is None:
             return {"kind": "empty"}
         self._tell("freecad.mesh", f"parts.{name}")

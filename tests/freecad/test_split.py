@@ -8,7 +8,7 @@ import tempfile
 import zipfile
 from collections.abc import Callable, Mapping
 from functools import cache
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 import pytest
 
@@ -20,11 +20,13 @@ from articad.errors import ExportError, ReadError
 from articad.export.freecad import write_freecad, write_freecad_alone
 from articad.export.freecad_look import verify
 from articad.formats import write
+from articad.geometry.part import Part
 from articad.geometry.shapes import box
 from articad.importers.freecad import read_document, read_freecad
 from articad.kernels import freecad_install
 from articad.kernels.freecad_file import packed
 from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
+from articad.kinematics.declare import fixed
 from articad.runs.pull import pull
 from tests.freecad import cupboard, opened
 
@@ -103,6 +105,22 @@ def test_the_content_is_that_of_one_document(tmp_path: Path) -> None:
     for name, held in one.now.items():
         if held["type"] != "App::Part":
             assert many.now[name]["expressions"] == held["expressions"], name
+
+
+def test_parts_whose_names_differ_in_case_alone_have_files_of_their_own_on_every_system(tmp_path: Path) -> None:
+    """Windows and macOS take two such names for one file, and some names for devices; `Parameters` has a file, too."""
+    names = ["Arm", "arm", "ARM", "con", "aux", "parameters", "assembly", "arm_2"]
+    connector = Connector("c", SE3.identity())
+    parts = [Part.from_mesh(name, box(1 + number, 1, 1), density=1.0, connectors={"c": connector}) for number, name in enumerate(names)]
+    joints = [fixed(f"{part.name}_fixed", parts[0]["c"], part["c"]) for part in parts[1:]]
+    wanted = ac.Assembly.from_parts("cases", parts=parts, joints=joints, ground="Arm")
+    bundle = write_freecad_alone(wanted, split=True)
+    stems = [PurePosixPath(path).stem.casefold() for path in list(bundle.files)[1:]]
+    assert len({*stems, "parameters"}) == len(stems) + 1 == len(names) + 1
+    assert not {"con", "aux"} & set(stems)
+    bundle.write(tmp_path)
+    found = read_freecad(tmp_path / bundle.main)
+    same(wanted, found)
 
 
 def test_an_edit_of_a_parts_file_is_found_and_pulled(tmp_path: Path) -> None:
