@@ -150,6 +150,43 @@ def test_a_child_gets_no_key_and_no_setting_of_python(monkeypatch: pytest.Monkey
     assert "PYTHONPATH" not in launcher.environment_with_keys()
 
 
+SEARCHED = ("PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "OMP_TOOL_LIBRARIES", "LIBGL_DRIVERS_PATH", "__EGL_VENDOR_LIBRARY_DIRS")
+BY_KEYS = ("PATH", "LD_LIBRARY_PATH", "LD_PRELOAD", "LD_AUDIT", "DYLD_INSERT_LIBRARIES", "DYLD_FRAMEWORK_PATH", "GCONV_PATH")
+
+
+@pytest.mark.parametrize("has_keys", [False, True])
+def test_a_child_searches_no_folder_but_absolute_ones(has_keys: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An empty or a relative entry means the working folder, which may be that of a job of a stranger's."""
+    names, inside = (BY_KEYS, tmp_path / "lib") if has_keys else (SEARCHED, tmp_path / "lib")
+    for name in names:
+        monkeypatch.setenv(name, f":.:relative:{inside}::../x:")
+    given = launcher.environment_with_keys() if has_keys else launcher.environment(*launcher.SCREEN)
+    assert {name: given.get(name) for name in names} == dict.fromkeys(names, str(inside))
+    raw = {name: os.environ[name] for name in names if name not in ("LD_PRELOAD", "LD_AUDIT")}
+    seen = json.loads(in_child("import json, os; print(json.dumps(dict(os.environ)))", environment=raw).out)
+    assert {name: seen.get(name) for name in raw} == dict.fromkeys(raw, str(inside)), "whoever states the environment"
+    for name in names:
+        monkeypatch.setenv(name, ".:")
+    given = launcher.environment_with_keys() if has_keys else launcher.environment(*launcher.SCREEN)
+    assert not given.keys() & set(names)
+    assert launcher.environment_with_keys().get("HOME") == os.environ.get("HOME")
+
+
+def test_libraries_that_start_programs_by_themselves_find_none_in_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`webbrowser` asks for xdg-settings and starts a browser, from the folders of the PATH."""
+    for name in ("PATH", "LD_LIBRARY_PATH"):
+        monkeypatch.setenv(name, f":.:{tmp_path}:")
+    with launcher.safe_path():
+        assert (os.environ["PATH"], os.environ["LD_LIBRARY_PATH"]) == (str(tmp_path), str(tmp_path))
+        assert os.environ["PYTHONSAFEPATH"] == "1"
+    assert os.environ["PATH"] == f":.:{tmp_path}:"
+    monkeypatch.setenv("PATH", "")
+    with launcher.safe_path():
+        assert os.environ.get("PATH") is None
+
+
 def test_a_program_gets_the_environment_as_it_was_given() -> None:
     assert launcher.run(["/usr/bin/env"], limits=Limits(seconds=30), environment={}).out == b""
 

@@ -23,7 +23,7 @@ import signal
 import socket
 import sys
 import zlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final, NoReturn
 
 from articad.aliases import Json
@@ -39,6 +39,13 @@ _EARLY: Final = (
     "litellm._service_logger",
 )
 """Modules that the first call would import: 1.5 s that each forked process would spend again."""
+_SETTINGS: Final = {
+    "LITELLM_LOCAL_MODEL_COST_MAP": "True",  # otherwise the import fetches a price list
+    "LITELLM_LOCAL_ANTHROPIC_BETA_HEADERS": "True",  # otherwise a call of Bedrock fetches a list of headers
+    "LITELLM_LOG": "ERROR",  # otherwise requests are printed
+    "LITELLM_MODE": "PRODUCTION",  # otherwise the import loads the nearest .env, which may name another host for the user's key
+}
+_OF_A_PROVIDER: Final = ("LITELLM_PROXY_API_BASE", "LITELLM_PROXY_API_KEY")  # a user's own endpoint, and its key
 _PIECE: Final = 65536  # bytes that are decompressed at once
 _PR_SET_PDEATHSIG: Final = 1
 _TOO_LARGE: Final = f"its answer is longer than {LARGEST_BODY} bytes"
@@ -74,9 +81,7 @@ def main() -> None:
 
 def load() -> Any:
     """Import LiteLLM with its telemetry, its downloads and its reading of `.env` files turned off, and limit what it reads."""
-    os.environ.setdefault("LITELLM_LOCAL_MODEL_COST_MAP", "True")  # otherwise the import fetches a price list
-    os.environ.setdefault("LITELLM_LOG", "ERROR")
-    os.environ["LITELLM_MODE"] = "PRODUCTION"  # otherwise the import loads the nearest .env, which may name another host for the user's key
+    _become_environment(os.environ.copy())
     import litellm  # noqa: PLC0415 - only in the process that calls models
 
     litellm.suppress_debug_info = True
@@ -86,6 +91,13 @@ def load() -> Any:
             importlib.import_module(name)
     _bound_transport()
     return litellm
+
+
+def _become_environment(variables: Mapping[str, str]) -> None:
+    """Replace the environment of this process. Of LiteLLM's own variables it keeps what a provider needs, and sets those of `_SETTINGS`."""
+    kept = {name: value for name, value in variables.items() if not name.startswith("LITELLM_") or name in _OF_A_PROVIDER}
+    os.environ.clear()
+    os.environ.update(kept | _SETTINGS)
 
 
 # ---------------------------------------------------------------------- one call, in a process of its own
@@ -105,8 +117,7 @@ def _become(litellm: Any, line: socket.socket, parent: int) -> NoReturn:
         order = json.loads(told)
         signal.setitimer(signal.ITIMER_REAL, order["seconds"])
         _limit_memory(MEMORY + _PER_BYTE * len(told))
-        os.environ.clear()
-        os.environ.update(order["environment"])
+        _become_environment(order["environment"])
         with contextlib.redirect_stdout(sys.stderr):
             answer = _answer(litellm, order)
         line.sendall(json.dumps(answer).encode())

@@ -23,9 +23,9 @@ _NAME: Final = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
 def environment_folders() -> list[Path]:
     """Return the folders of the environment that may be packages or contain packages."""
-    ros1 = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
-    ros2 = [Path(entry) / "share" for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
-    return [folder.resolve() for folder in (*ros1, *ros2)]
+    ros1, ros2 = (map(Path, os.environ.get(name, "").split(os.pathsep)) for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"))
+    folders = [*ros1, *(entry / "share" for entry in ros2)]
+    return [folder.resolve() for folder in folders if folder.is_absolute()]  # a relative one would be the working folder
 
 
 def find_package(name: str, above: Iterable[Path], folders: Iterable[Path] = ()) -> Path | None:

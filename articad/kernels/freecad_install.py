@@ -154,7 +154,7 @@ class FreeCAD:
         run += f";ARGUMENTS={list(map(str, arguments))!r};exec(compile(open({shown!r}).read(),{program.name!r},'exec'))"
         before = [*_steady(), *_limited(limits)]
         if not confined:
-            environment = _ENVIRONMENT | {"PATH": os.environ.get("PATH", ""), "HOME": str(folder or "/nonexistent")}
+            environment = _ENVIRONMENT | {"PATH": os.environ.get("PATH", os.defpath), "HOME": str(folder or "/nonexistent")}
             return _ran([*before, self.program, "-c", run], environment, folder, files, limits.seconds)
         fault, faulty = os.pipe2(os.O_CLOEXEC | os.O_NONBLOCK)
         try:

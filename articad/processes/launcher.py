@@ -51,6 +51,9 @@ SCREEN: Final = (
 )
 """Variables that drawing with OpenGL needs."""
 _BASIC: Final = ("PATH", "LANG", "LC_", "TZ", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "OMP_", "OPENBLAS_", "SYSTEMROOT")
+_SEARCHED: Final = ("PATH", "GCONV_PATH", "OMP_TOOL_LIBRARIES")
+_OF_LIBRARIES: Final = ("LD_", "DYLD_", "LIBGL_", "GALLIUM_", "EGL_", "__EGL_")  # of the loader and of OpenGL
+_PLACES: Final = ("PATH", "DIR", "DIRS", "FILENAMES", "LIBRARIES", "PRELOAD", "AUDIT")
 _SAFE_PATH: Final = "PYTHONSAFEPATH"  # `-P` for all Python processes that inherit it
 _CHILD: Final = str(Path(__file__).with_name("child.py"))
 _LOOK_S: Final = 0.2  # between two checks whether a child that closed no pipe has ended
@@ -300,29 +303,27 @@ def environment(*more: str) -> dict[str, str]:
     """
     names = (*_BASIC, *more)
     prefixes = tuple(name for name in names if name.endswith("_"))
-    return {name: value for name, value in os.environ.items() if name in names or name.startswith(prefixes)}
+    return _without_working_folder({name: value for name, value in os.environ.items() if name in names or name.startswith(prefixes)})
 
 
 def environment_with_keys() -> dict[str, str]:
     """Return all variables of this process except Python's own, for a child that calls a model: providers choose the names of keys."""
-    return {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    return _without_working_folder({name: value for name, value in os.environ.items() if not name.startswith("PYTHON")})
 
 
 @contextlib.contextmanager
 def safe_path() -> Iterator[None]:
-    """Keep Python processes that a library starts by itself from importing modules of the working folder.
+    """Keep processes that a library starts by itself from taking programs, libraries and modules from the working folder.
 
-    The import of mujoco imports glfw, which runs `python -c` to ask a library for its version.
+    The import of mujoco imports glfw, which runs `python -c` to ask a library for its version; `webbrowser` runs what the PATH offers.
     """
-    before = os.environ.get(_SAFE_PATH)
-    os.environ[_SAFE_PATH] = "1"
+    before = {name: value for name, value in os.environ.items() if name == _SAFE_PATH or _is_searched(name)}
+    kept = _without_working_folder(before) | {_SAFE_PATH: "1"}
+    _exchange(before, kept)
     try:
         yield
     finally:
-        if before is None:
-            del os.environ[_SAFE_PATH]
-        else:
-            os.environ[_SAFE_PATH] = before
+        _exchange(kept, before)
 
 
 def which(name: str, path: str | None = None) -> str | None:
@@ -338,12 +339,37 @@ def which(name: str, path: str | None = None) -> str | None:
 
 def _variables(given: Mapping[str, str] | None, private: str | None, is_ours: bool) -> dict[str, str]:
     """Return the environment of a child: scratch files of ours go to its private folder, and so does its HOME if it needs none."""
-    variables = dict(environment() if given is None else given)
+    variables = _without_working_folder(environment() if given is None else given)
     if private is not None and (is_ours or given is None):
         variables |= {"TMPDIR": private, "HOME": variables.get("HOME", private)}
     if is_ours:
         variables |= {_SAFE_PATH: "1", "MUJOCO_GL": "disable"}  # for processes that its libraries start; MuJoCo draws nothing here
     return variables
+
+
+def _without_working_folder(variables: Mapping[str, str]) -> dict[str, str]:
+    """Leave out the entries of search paths that are not absolute: an empty or relative one means the working folder."""
+    kept = {}
+    for name, value in variables.items():
+        if not _is_searched(name):
+            kept[name] = value
+            continue
+        entries = value.replace(" ", os.pathsep) if name == "LD_PRELOAD" else value
+        if absolute := [entry for entry in entries.split(os.pathsep) if os.path.isabs(entry)]:  # noqa: PTH117 - texts, as they are
+            kept[name] = os.pathsep.join(absolute)
+    return kept
+
+
+def _is_searched(name: str) -> bool:
+    """Return whether a variable lists places from which programs or libraries are taken."""
+    return name in _SEARCHED or (name.startswith(_OF_LIBRARIES) and name.endswith(_PLACES))
+
+
+def _exchange(old: Mapping[str, str], new: Mapping[str, str]) -> None:
+    """Replace variables of this process by others."""
+    for name in old.keys() - new.keys():
+        os.environ.pop(name, None)
+    os.environ.update(new)
 
 
 def _drain(stream: IO[bytes], tail: bytearray) -> None:

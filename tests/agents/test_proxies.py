@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import datetime as dt
 import ipaddress
+import os
 import re
 import ssl
+import subprocess
+import sys
 import threading
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
@@ -137,3 +140,61 @@ def test_an_unknown_certificate_is_trusted_only_if_the_environment_says_so(
 def test_the_page_names_the_variables() -> None:
     told = set(re.findall(r"`([A-Z_]+)`", SECURITY.read_text()))
     assert {*PROXIES, *CERTIFICATES} <= told
+
+
+PROVIDERS = {
+    "openai/gpt-4o": "OPENAI",
+    "anthropic/claude-3-5-sonnet-20241022": "ANTHROPIC",
+    "gemini/gemini-1.5-pro": "GEMINI",
+    "mistral/mistral-large-latest": "MISTRAL",
+    "groq/llama-3.3-70b-versatile": "GROQ",
+    "deepseek/deepseek-chat": "DEEPSEEK",
+    "openrouter/openai/gpt-4o": "OPENROUTER",
+    "xai/grok-2": "XAI",
+    "cohere_chat/command-r": "COHERE",
+    "together_ai/meta-llama/Llama-3-8b": "TOGETHERAI",
+    "ollama_chat/llama3": "OLLAMA",
+    "litellm_proxy/m": "LITELLM_PROXY",
+}
+LOUD = {
+    "LITELLM_LOCAL_MODEL_COST_MAP": "False",
+    "LITELLM_LOCAL_ANTHROPIC_BETA_HEADERS": "False",
+    "LITELLM_LOG": "DEBUG",
+    "LITELLM_MODE": "DEV",
+    "LITELLM_DISABLE_REDACT_SECRETS": "True",
+    "LITELLM_LENS_URL": "https://lens.invalid",
+}
+
+
+@pytest.mark.parametrize("more", [{}, LOUD], ids=["quiet", "loud"])
+@pytest.mark.parametrize("model", PROVIDERS)
+def test_no_host_is_asked_but_the_one_that_is_stated(model: str, more: Mapping[str, str], stated: pytest.MonkeyPatch) -> None:
+    """Whatever LiteLLM looks up about a provider comes from its own files: a proxy sees every other host that is asked."""
+    for name, value in {f"{PROVIDERS[model]}_API_KEY": "sk-none", **more}.items():
+        stated.setenv(name, value)
+    with served() as (host, asked), served() as (proxy, elsewhere):
+        stated.setenv("HTTPS_PROXY", f"http://{proxy}")
+        with suppress(TransportError):  # not every provider's answers have the form of these
+            LiteLLM(model, api_base=f"http://{host}/v1", tries=1).complete(QUESTION)
+        assert elsewhere == []
+        assert asked
+
+
+def test_no_list_of_models_or_headers_is_fetched() -> None:
+    """LiteLLM fetches its newest lists unless it is told not to: the one of headers at the first call of Bedrock, long after the import."""
+    code = """
+import os, sys
+from articad.agents import provider
+litellm = provider.load()
+provider._become_environment(dict(os.environ) | eval(sys.argv[1]))
+import httpx
+fetched = []
+httpx.get = lambda *words, **_: fetched.append(words) or 1 / 0
+from litellm import anthropic_beta_headers_manager
+from litellm.litellm_core_utils import get_model_cost_map
+assert anthropic_beta_headers_manager._load_beta_headers_config()
+assert get_model_cost_map.get_model_cost_map("https://elsewhere.invalid")
+print(fetched)
+"""
+    done = subprocess.run([sys.executable, "-c", code, repr(LOUD)], env=os.environ | LOUD, capture_output=True, text=True, check=False)
+    assert done.stdout.strip() == "[]", done.stderr
