@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import math
 import sys
 import time
 from collections import Counter
@@ -48,7 +49,7 @@ FREE_RAD: Final = 0.15
 STEP_MM: Final = 0.25
 STEP_RAD: Final = 0.025
 DEEP_MM: Final = 0.02  # besides the deflections of the two meshes: what overlaps by less touches
-PIVOTS: Final = 5  # places along a joint's axis about which a tilt is tried
+PIVOTS: Final = (5, 41)  # places along a joint's axis about which a tilt is tried; the second if it is stopped at all of the first
 
 Placed = Mapping[str, SE3]
 
@@ -105,7 +106,7 @@ def tilt(scene: Scene, poses: Placed, movers: Sequence[str], still: Sequence[str
     """Return how far parts turn about an axis of a frame, at the best of some places along the frame's z, up to FREE_RAD, and what stops them."""
     heights = np.concatenate([(frame.inverse() @ poses[name]).apply(scene.meshes[name].vertices)[:, 2] for name in movers])
     best: tuple[float, str | None] = (-1.0, None)
-    for height in np.linspace(heights.min(), heights.max(), PIVOTS):
+    for height in np.concatenate([np.linspace(heights.min(), heights.max(), count) for count in PIVOTS]):
         for sign in (1.0, -1.0):
             about = frame @ SE3.from_translation(np.array([0.0, 0.0, height]))
             angle, stop = 0.0, None
@@ -192,7 +193,11 @@ def judged(folder: Path) -> dict[str, Any]:
     for finding in made.findings:
         row = checks.get(finding.where.removeprefix("joints."))
         losses = () if row is None or finding.code == "W_JOINT_SHORT" else [loss for loss in row.losses if not loss.by_weight]
-        found.append(_told(finding, [] if row is None else [tried(scene, assembly, joints[row.joint], row, loss) for loss in losses]))
+        found.append(
+            _told(
+                finding, [] if row is None else [_with_room(tried(scene, assembly, joints[row.joint], row, loss), loss) for loss in losses]
+            )
+        )
     for finding in assembly.check_support().findings:
         oracle = {"W_NOT_CARRIED": falls, "W_TIPS_OVER": stands}.get(finding.code)
         found.append(_told(finding, [] if oracle is None else [oracle(scene, assembly, finding)]))
@@ -205,44 +210,23 @@ def judged(folder: Path) -> dict[str, Any]:
     }
 
 
+def _with_room(one: dict[str, Any], loss: FreeWay) -> dict[str, Any]:
+    return one if math.isinf(loss.room) else one | {"room": round(loss.room, 4)}
+
+
+def agrees(one: Mapping[str, Any]) -> bool:
+    """Return whether the meshes say of a motion what the finding does: nothing stops it, or its partner does where its play is said to end."""
+    room = one.get("room")
+    if room is None or "mm" not in one or room >= FREE_MM:
+        return bool(one["free"])
+    return not one["free"] and abs(one["mm"] - room) <= STEP_MM + DEEP_MM
+
+
 def _told(finding: Finding, trials: list[dict[str, Any]]) -> dict[str, Any]:
     return {"code": finding.code, "where": finding.where, "parts": list(finding.parts), "message": finding.message, "tried": trials}
 
 
-LIFTED: Final = "False: the part lies on a face, and its weight holds it against tilts as it does against a lift, which the check does not call a freedom."
-ARGUED: Final[Mapping[tuple[str, str], str]] = {
-    (
-        "box_cash",
-        "joints.key",
-    ): "The barrel (radius 8 mm) turns in a bore of radius 8.25 mm in a wall of 2 mm. Nothing stops it inwards: the key falls into the box, so the finding is "
-    "true. Outwards the bit (13 mm from the axis) meets the wall after 3 mm, and tilts end at 0.125 to 0.15 rad: these three ways are named wrongly.",
-    (
-        "caster_swivel_50",
-        "joints.wheel",
-    ): "False as it is worded: the wheel (20 mm wide) is held between cheeks 24 mm apart, with 2 mm of play on each side. The check "
-    "looks for flat faces within 1 mm only, and calls the play a freedom. A spacer or a narrower fork is missing.",
-    (
-        "grinder_coffee",
-        "joints.cover",
-    ): f"{LIFTED} The cover tilts by 0.15 rad if its middle is lifted by 2 to 3 mm, and by 0.01 rad without.",
-    (
-        "head_three_way",
-        "joints.roll",
-    ): "Nothing holds the cradle on its pin upwards, so the finding is true. Downwards it meets the head after 1 mm, "
-    "which is where the check stops looking for flat faces: this way is named wrongly.",
-    (
-        "latch_draw_case",
-        "joints.bow",
-    ): "False as it is worded: the lever stops the bow after 4.5 mm on both sides, which is more play than the check looks for.",
-    (
-        "microscope_school",
-        "joints.mirror",
-    ): "False as it is worded: the stand stops the mirror after 3 mm on both sides, which is more play than the check looks for.",
-    **{
-        ("hockey_table", f"joints.{name}"): f"{LIFTED} It tilts by 0.15 rad if its middle is lifted by 5 mm, and not at all without."
-        for name in ("puck", "pusher", "second_pusher")
-    },
-}
+ARGUED: Final[Mapping[tuple[str, str], str]] = {}
 """Of findings that the meshes stop: what their geometry says, by product and place."""
 
 VERDICTS: Final = ("confirmed", "held by others", "stopped", "not tried")
@@ -257,15 +241,16 @@ ABOUT: Final = f"""\
 Each finding is tried on the meshes by a method that shares nothing with the check, which reasons about faces to first order:
 
 - **a joint leaves a translation free**: the child is moved that way by {FREE_MM:g} mm in steps of {STEP_MM:g} mm, and each place is a Boolean of the solids (manifold3d).
-  The finding is true if the child never enters the parent. Other parts that it enters are pushed along, and are named.
-- **a joint leaves a rotation free**: the child is turned by {FREE_RAD:g} rad about that axis at {PIVOTS} places, the same way.
+  The finding is true if the child never enters the parent. Other parts that it enters are pushed along, and are named. If the finding states a play of less than
+  {FREE_MM:g} mm, it is true if the child enters the parent after that play, to one step.
+- **a joint leaves a rotation free**: the child is turned by {FREE_RAD:g} rad about that axis at up to {PIVOTS[1]} places, the same way.
 - **a part is not carried**: it is moved down by {FREE_MM:g} mm; all others stay.
 - **the product tips over**: the centre of mass, from centres integrated over the triangles of the meshes, is outside the triangles that span its lowest points.
 
-- *confirmed*: the meshes stop none of the motions that the finding names.
+- *confirmed*: the meshes stop none of the motions that the finding names, or each play where it is said to end.
 - *held by others*: the joint's own two parts do not stop them, but other parts between the two do, pushed against each other. The joint is not made by its parts;
   the check should name those others instead.
-- *stopped*: the joint's own parts stop one of them; the finding is in question.
+- *stopped*: the joint's own parts stop one of them elsewhere; the finding is in question.
 - *not tried*: the finding names no motion.
 """
 
@@ -274,9 +259,9 @@ def verdict(finding: Mapping[str, Any]) -> str:
     """Return what the meshes say of a finding: confirmed, held by others, stopped or not tried."""
     if not finding["tried"]:
         return "not tried"
-    if all(one["free"] for one in finding["tried"]):
+    if all(agrees(one) for one in finding["tried"]):
         return "confirmed"
-    return "held by others" if all(one["free"] or one.get("alone") for one in finding["tried"]) else "stopped"
+    return "held by others" if all(agrees(one) or one.get("alone") for one in finding["tried"]) else "stopped"
 
 
 def page(stored: Mapping[str, Any]) -> str:
@@ -327,7 +312,8 @@ def _motion(one: Mapping[str, Any]) -> str:
         return "outside" if one["free"] else "inside"
     far = f"{one['mm']:g} mm" if "mm" in one else f"{one['rad']:g} rad"
     pushed = f", with {' and '.join(f'`{name}`' for name in one['pushed'])}" if one["pushed"] else ""
-    return f"{one['way']} {far}{pushed}" + ("" if one["free"] else f" to `{one['stop']}`")
+    play = "" if "room" not in one else f", said to be {one['room']:.3g} {'mm' if 'mm' in one else 'rad'}"
+    return f"{one['way']} {far}{pushed}" + ("" if one["free"] else f" to `{one['stop']}`") + play
 
 
 def stored_results() -> dict[str, Any]:

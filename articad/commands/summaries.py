@@ -87,7 +87,7 @@ def print_joints(rows: list[Report], terminal: Terminal) -> None:
         made = [f"{pair['kind']} ({' and '.join(pair['parts'])}, {pair['play_mm']:.3g} mm)" for pair in row["made_by"]]
         told = [", ".join(made) or "no surfaces found", *([row["reason"]] if row["reason"] else [])]
         if row["free"]:
-            told.append("free: " + ", ".join(way["way"] + (" (against its weight)" if way["by_weight"] else "") for way in row["free"]))
+            told.append("free: " + ", ".join(_free(way) for way in row["free"]))
         if row["held_by"]:
             told.append(f"with {', '.join(row['held_by'])}")
         if row["engaged_share"] is not None:
@@ -132,6 +132,13 @@ def print_order(report: Report, terminal: Terminal) -> None:
     if report["left_out"]:
         terminal.say(f"Not considered, without a valid solid: {', '.join(report['left_out'])}.")
     terminal.say(f"{len(report['steps'])} steps. Not checked: {report['not_checked'][0].lower()}{report['not_checked'][1:]}")
+
+
+def _free(way: Report) -> str:
+    """Return a freedom that a joint leaves, such as `+z (2 mm)`."""
+    unit = "rad" if way["way"].startswith("about") else "mm"
+    told = [*([] if way["room"] is None else [f"{way['room']:.3g} {unit}"]), *(["against its weight"] if way["by_weight"] else [])]
+    return way["way"] + (f" ({', '.join(told)})" if told else "")
 
 
 def _way(direction: list[float]) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
-from articad.disassembly.contacts import Outline, first_contacts, material_met
+from articad.interference.travel import Outline, first_contacts, material_met
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import inwards
@@ -185,9 +185,7 @@ class Ways:
 
     def depth(self, a: str, b: str) -> float:
         """Return the depth of overlap that is allowed for a pair [mm]."""
-        waiver = self.scene.relations.waiver(a, b)
-        allowed = self.scene.tolerated(a, b)
-        return allowed if waiver is None else max(allowed, waiver.max_depth + self.scene.deflection_of(a, b))
+        return self.scene.passable(a, b)
 
     def _measured(self, a: str, b: str, at: int, offset: FloatArray) -> tuple[float, float]:
         moved = self._outline(a, self.depth(a, b), at)

@@ -82,6 +82,11 @@ class Scene:
         """Depth that needs no waiver [mm]."""
         return self.relations.tolerated(a, b, self.deflection_of(a, b))
 
+    def passable(self, a: str, b: str) -> float:
+        """Depth by which two parts may enter each other while they move past each other: that of their waiver, if they have one [mm]."""
+        waiver, allowed = self.relations.waiver(a, b), self.tolerated(a, b)
+        return allowed if waiver is None else max(allowed, waiver.max_depth + self.deflection_of(a, b))
+
     @cached_property
     def local_boxes(self) -> tuple[FloatArray, FloatArray]:
         """Centres and half sides of the bodies' boxes in their own frames, `(N, 3)` each [mm]."""

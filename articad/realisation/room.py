@@ -16,7 +16,7 @@ from scipy.sparse import csr_array
 
 from articad.arrays import BoolArray, FloatArray
 
-__all__ = ["FAR_RAD", "GROUND", "Touch", "far_mm", "room", "rows"]
+__all__ = ["FAR_RAD", "GROUND", "Rise", "Touch", "far_mm", "room", "rows"]
 
 FAR_RAD: Final = 0.35  # a body that may turn by this much is not held
 GROUND: Final = -1  # the body that stands still
@@ -48,13 +48,28 @@ def far_mm(touches: Sequence[Touch]) -> float:
     return 5.0 + 4.0 * max((float(touch.gaps.max()) for touch in touches), default=0.0)
 
 
-def room(touches: Sequence[Touch], held: BoolArray, centre: FloatArray) -> FloatArray:
+class Rise(NamedTuple):
+    """A bound on how far the centre of mass of body 0 rises.
+
+    Attributes:
+        up: Unit vector against the weight, `(3,)`.
+        mass: The centre of mass, `(3,)` [mm].
+        most: How far it may rise [mm].
+    """
+
+    up: FloatArray
+    mass: FloatArray
+    most: float
+
+
+def room(touches: Sequence[Touch], held: BoolArray, centre: FloatArray, rise: Rise | None = None) -> FloatArray:
     """Return how far body 0 may move in each direction, `(2, 6)` [mm, rad]: positive, then negative; x, y, z, then about x, y, z.
 
     Args:
         touches: All contacts; bodies are numbered from 0.
         held: Components of body 0 that are held at zero because the joint itself moves along them, `(6,)`.
         centre: The reference point of body 0, `(3,)` [mm].
+        rise: How far its centre of mass may rise; unbounded by default.
     """
     far = far_mm(touches)
     limits = np.where(held, 0.0, np.array([far] * 3 + [FAR_RAD] * 3))
@@ -66,6 +81,10 @@ def room(touches: Sequence[Touch], held: BoolArray, centre: FloatArray) -> Float
     dense = np.concatenate([rows(touch, centres) for touch in touches])
     gaps = np.concatenate([touch.gaps for touch in touches])
     grazing = np.concatenate([np.full(len(touch.gaps), touch.grazing) for touch in touches])
+    if rise is not None:
+        row = np.zeros((1, 6 * count))
+        row[0, :6] = [*rise.up, *np.cross(rise.mass - centre, rise.up)]
+        dense, gaps, grazing = np.concatenate([dense, row]), np.append(gaps, rise.most), np.append(grazing, 0.0)
     found = np.zeros((2, 6))
     for column in np.flatnonzero(~held):
         for place, sign in enumerate((1.0, -1.0)):

@@ -23,8 +23,9 @@ from articad.interference.sampled_ranges import sampled_piece
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.realisation.contacts import FaceReach, Pair, pairs
-from articad.realisation.room import FAR_RAD, GROUND, Touch, far_mm, room
+from articad.realisation.room import FAR_RAD, GROUND, Rise, Touch, far_mm, room
 from articad.realisation.sides import PartFace, Sides, sides
+from articad.realisation.stops import Stops
 
 __all__ = ["LEAST_SHARE", "OWN", "FreeWay", "JointCheck", "JointVerdict", "Realisation", "check_joints"]
 
@@ -35,6 +36,8 @@ TOUCH_MM: Final = 0.05  # surfaces of a fixed joint this close are one
 _FLAT_MM, _FLAT_SHARE, _FLAT_MOST = 1.0, 0.01, 5.0  # reach of planes: the larger of the two; the share is of the child's diagonal
 _ROUND_MM, _ROUND_SHARE = 0.5, 0.1  # reach of cylinders and spheres; the share is of the radius
 _UP = 0.9  # cosine: a direction in which the weight holds a part
+_ASIDE = 0.1  # the same of a normal, below which a face is across a way
+_OVER = 0.3  # the same for a way aslant, over a flank that stops the straight way
 _SHORT_MM = 1.0  # guides shorter than this have no share
 _NAMES: Final = ("x", "y", "z", "about x", "about y", "about z")
 
@@ -59,8 +62,8 @@ class FreeWay(NamedTuple):
 
     Attributes:
         way: Such as "+z" or "about x", in the joint's frame on the parent.
-        room: How far the child may move [mm or rad]; infinity if nothing was found that stops it.
-        by_weight: Whether only the weight of the child acts against it.
+        room: How far the child may move [mm or rad]: exact for straight ways, to first order for tilts; infinity if its partner does not stop it.
+        by_weight: Whether only the weight of the child acts against it: the motion lifts its centre of mass.
     """
 
     way: str
@@ -170,10 +173,10 @@ class _Examined:
         fit = scene.fits.get(joint.name)
         widest = (fit.gap_max or 0.0) if fit is not None else 0.0
         slack = scene.deflections.get(joint.parent, 0.0) + scene.deflections.get(joint.child, 0.0)
-        size = 0.0
+        self.size = 0.0
         if joint.child in scene.meshes:
-            size = float(np.linalg.norm(np.ptp(scene.meshes[joint.child].bounds, axis=0)))
-        flat = min(max(_FLAT_MM, _FLAT_SHARE * size), _FLAT_MOST)
+            self.size = float(np.linalg.norm(np.ptp(scene.meshes[joint.child].bounds, axis=0)))
+        flat = min(max(_FLAT_MM, _FLAT_SHARE * self.size), _FLAT_MOST)
         self.reach = FaceReach(max(flat, widest + slack), max(_ROUND_MM, widest + slack), _ROUND_SHARE)
         if joint.type is JointType.FIXED:
             self.reach = FaceReach(TOUCH_MM + slack, TOUCH_MM + slack, 0.0)
@@ -195,49 +198,78 @@ class _Examined:
             return replace(row, verdict=verdict, reason=reason)
         if joint.type is JointType.SCREW:
             row = replace(row, reason="the thread is not assessed")
-        losses = self._losses(found)
+        losses = self._losses(rest, found)
         if losses:
             return self._otherwise(replace(row, losses=losses), rest, found)
         return self._over(replace(row, verdict="made"), found, reached)
 
-    def _losses(self, found: Sequence[Pair], more: Sequence[Touch] = ()) -> tuple[FreeWay, ...]:
+    def _losses(
+        self, at: Sides, found: Sequence[Pair], values: Sequence[float] | None = None, more: Sequence[Touch] = ()
+    ) -> tuple[FreeWay, ...]:
         """Return the freedoms that contacts leave and the joint should remove.
 
         Args:
-            found: Pairs of faces of the joint's two sides.
+            at: The faces of the joint's two sides.
+            found: Their pairs within reach.
+            values: Of the joint's freedoms [rad, mm]; at rest by default.
             more: Contacts of both with other bodies, and of those with each other.
         """
-        held, centre = np.array(OWN[self.joint.type], dtype=bool), self._centre([pair.points for pair in found])
-        touches = [*(Touch(GROUND, 0, pair.points, pair.normals, pair.gaps, pair.grazing) for pair in found), *more]
-        free = room(touches, held, centre)
-        far = far_mm(touches)
-        losses = []
-        for column in np.flatnonzero(~held):
-            limit = far if column < 3 else TILT_RAD
-            end = far if column < 3 else FAR_RAD
-            open_ways = [sign for sign, value in zip("+-", free[:, column], strict=True) if value >= limit * (1 - 1e-9)]
-            if column >= 3:
-                if open_ways:
-                    value = float(free[:, column].max())
-                    losses.append(FreeWay(_NAMES[column], math.inf if value >= end * (1 - 1e-9) else value, by_weight=False))
-                continue
-            for sign in open_ways:
-                lifts = (1.0 if sign == "+" else -1.0) * float(self.up[column]) >= _UP
-                losses.append(FreeWay(sign + _NAMES[column], math.inf, by_weight=lifts))
-        return tuple(losses)
+        held, touches = np.array(OWN[self.joint.type], dtype=bool), [*_own(found), *more]
+        free, far = room(touches, held, self._centre(found)), far_mm(touches)
+        stops, losses = Stops(self.scene, self.joint, values), []
+        for column in np.flatnonzero(~held[:3]):
+            for sign, name, value in zip((1.0, -1.0), "+-", free[:, column], strict=True):
+                if value >= far * (1 - 1e-9):
+                    end, way = stops.room(int(column), sign, found, held[:3], self.reach.round)
+                    if end > self.reach.round:
+                        steep = _UP if abs(way[column]) == 1.0 else _OVER
+                        losses.append(FreeWay(name + _NAMES[column], end, by_weight=float(way @ self.up) >= steep))
+        tilting = [int(column) for column in np.flatnonzero(~held) if column >= 3 and _tilts(free, int(column))]
+        return (*losses, *(self._tilts(tilting, at, found, losses, stops, more) if tilting else ()))
 
-    def _centre(self, points: Sequence[FloatArray]) -> FloatArray:
+    def _tilts(
+        self, columns: Sequence[int], at: Sides, found: Sequence[Pair], losses: Sequence[FreeWay], stops: Stops, more: Sequence[Touch]
+    ) -> Iterator[FreeWay]:
+        """Yield the tilts that contacts leave in place: those of faces that are as far apart as the child moves when it tilts.
+
+        A way in which the child leaves is not gone along. The weight holds a tilt that lifts its centre of mass: at the angle θ to first
+        order by more than the turn about its foot lowers it, h θ² / 2 with its height h above the lowest contact.
+        """
+        found = [*found, *self._wide(at)]
+        held, centre, touches = np.array(OWN[self.joint.type], dtype=bool), self._centre(found), [*_own(found), *more]
+        for loss in losses:
+            if math.isinf(loss.room) and not loss.by_weight:
+                held[_NAMES.index(loss.way[1:])] = True
+        free = room(touches, held, centre)
+        columns = [column for column in columns if _tilts(free, column)]
+        if columns:
+            mass = stops.weight()
+            lowest = min((float((pair.points @ self.up).min()) for pair in found), default=math.inf)
+            height = max(0.0, float(mass @ self.up) - lowest)
+            rising = room(touches, held, centre, Rise(self.up, mass, height * TILT_RAD**2 / 2))
+        for column in columns:
+            value = float(free[:, column].max())
+            yield FreeWay(_NAMES[column], math.inf if value >= FAR_RAD * (1 - 1e-9) else value, by_weight=not _tilts(rising, column))
+
+    def _wide(self, at: Sides) -> list[Pair]:
+        """Return the pairs of faces that a tilt may bring together, across the ways that the joint itself moves along: it leaves the others."""
+        wide = max(_FLAT_MOST, TILT_RAD * self.size)
+        own = np.flatnonzero(OWN[self.joint.type][:3])
+        found = pairs(at, FaceReach(max(wide, self.reach.flat), max(wide, self.reach.round), self.reach.share))
+        return [pair for pair in found if float(np.abs(pair.normals[:, own]).max(initial=0.0)) < _ASIDE]
+
+    def _centre(self, found: Sequence[Pair]) -> FloatArray:
         """Return the point whose translation is examined: that of a ball or universal joint, else the middle of the contacts."""
-        if not points or self.joint.type in (JointType.BALL, JointType.UNIVERSAL):
+        if not found or self.joint.type in (JointType.BALL, JointType.UNIVERSAL):
             return np.zeros(3)
-        every = np.concatenate(points)
+        every = np.concatenate([pair.points for pair in found])
         return np.asarray((every.min(axis=0) + every.max(axis=0)) / 2)
 
     def _otherwise(self, row: JointCheck, rest: Sides, found: Sequence[Pair]) -> JointCheck:
         """Return the row of a joint that its own two sides do not make: perhaps with other parts, or with surfaces that are not known."""
         more, by = self._around(rest)
         if by:
-            losses = self._losses(found, more)
+            losses = self._losses(rest, found, more=more)
             if len(losses) < len(row.losses):
                 verdict: JointVerdict = "partly" if _unsupported(losses) else "held by others"
                 return replace(row, verdict=verdict, losses=losses, by=by)
@@ -290,9 +322,10 @@ class _Examined:
         length = _guide(found)
         least: float | None = None
         for at, values in self._ends(reached):
-            there = pairs(sides(self.scene, self.joint, values), self.reach)
+            moved = sides(self.scene, self.joint, values)
+            there = pairs(moved, self.reach)
             row = replace(row, poses=row.poses + 1)
-            losses = self._losses(there)
+            losses = self._losses(moved, there, values)
             if _unsupported(losses):
                 return replace(row, verdict="partly", losses=losses, at=at, share=_share(there, length) if self._slides() else None)
             if self._slides() and length > _SHORT_MM:
@@ -328,6 +361,15 @@ class _Examined:
         return [value for value in (lower, upper) if abs(value - freedom.rest) > 1e-9]
 
 
+def _own(found: Sequence[Pair]) -> list[Touch]:
+    """Return the contacts of the joint's own two sides: the child is body 0."""
+    return [Touch(GROUND, 0, pair.points, pair.normals, pair.gaps, pair.grazing) for pair in found]
+
+
+def _tilts(free: FloatArray, column: int) -> bool:
+    return bool(free[:, column].max() >= TILT_RAD * (1 - 1e-9))
+
+
 def _unsupported(losses: Sequence[FreeWay]) -> bool:
     return any(not loss.by_weight for loss in losses)
 
@@ -361,14 +403,14 @@ def _is_short(share: float) -> bool:
 def _findings(row: JointCheck) -> Iterator[Finding]:
     where, a, b = f"joints.{row.joint}", *row.parts
     at = "" if not row.at else " at " + ", ".join(f"{name} = {value:.4g}" for name, value in row.at.items())
-    ways = ", ".join(loss.way for loss in row.losses if not loss.by_weight)
+    ways = _left([loss for loss in row.losses if not loss.by_weight])
     pose = None if row.at is None else dict(row.at)
     if row.verdict == "not made":
         yield Finding(
             code="W_JOINT_NOT_MADE",
             where=where,
             parts=row.parts,
-            message=f"No surfaces of {a} and {b} form the {row.type} joint {row.joint!r}: the child is free along {ways}.",
+            message=f"No surfaces of {a} and {b} form the {row.type} joint {row.joint!r}: they leave the child {ways}.",
             hint=_remedy(row.type),
             stage="fit",
         )
@@ -378,7 +420,7 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             code=code,
             where=where,
             parts=row.parts,
-            message=f"The {row.type} joint {row.joint!r} of {a} and {b} leaves the child free along {ways}{at}.",
+            message=f"The {row.type} joint {row.joint!r} of {a} and {b} leaves the child {ways}{at}.",
             hint="Lengthen the guide or the pin, or shorten the range."
             if row.at
             else "Add surfaces that stop these motions, or a part that does.",
@@ -397,6 +439,21 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             pose=pose,
             stage="fit",
         )
+
+
+def _left(losses: Sequence[FreeWay]) -> str:
+    """Return what a joint leaves its child, such as "free along +z, about x, with 2 mm of play along -z"."""
+    free = [_along(loss) for loss in losses if math.isinf(loss.room)]
+    plays = [
+        f"{loss.room:.3g} {'rad' if loss.way.startswith('about') else 'mm'} of play {_along(loss)}"
+        for loss in losses
+        if math.isfinite(loss.room)
+    ]
+    return ", with ".join([*([f"free {', '.join(free)}"] if free else []), *([", ".join(plays)] if plays else [])])
+
+
+def _along(loss: FreeWay) -> str:
+    return loss.way if loss.way.startswith("about") else f"along {loss.way}"
 
 
 def _remedy(kind: str) -> str:

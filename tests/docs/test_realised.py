@@ -97,6 +97,12 @@ def test_an_eye_tilts_on_its_pin_by_its_play_only(realised: ModuleType) -> None:
         ([{"free": True}, {"free": True}], "confirmed"),
         ([{"free": True}, {"free": False, "alone": True}], "held by others"),
         ([{"free": True}, {"free": False, "alone": False}], "stopped"),
+        ([{"free": False, "mm": 2.0, "room": 2.1}], "confirmed"),
+        ([{"free": False, "mm": 2.0, "room": 3.0}], "stopped"),
+        ([{"free": True, "mm": 5.0, "room": 3.0}], "stopped"),
+        ([{"free": True, "mm": 5.0, "room": 9.0}], "confirmed"),
+        ([{"free": False, "mm": 2.0, "room": 9.0}], "stopped"),
+        ([{"free": True, "rad": 0.15, "room": 0.2}], "confirmed"),
     ],
 )
 def test_a_finding_is_confirmed_if_the_meshes_stop_nothing_of_it(realised: ModuleType, tried: list[dict[str, Any]], verdict: str) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from articad.connectors import SE3
-from articad.disassembly.contacts import Outline, _travels, first_contacts, material_met
+from articad.interference.travel import Outline, _travels, first_contacts, material_met
 from articad.geometry import TriMesh
 from articad.geometry.shapes import box, cylinder, tube
 from articad.interference.body import body_of
