@@ -17,10 +17,10 @@ import numpy as np
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
-from articad.interference.travel import Outline, first_contacts, material_met
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import inwards
+from articad.interference.travel import Outline, first_contacts, material_met
 
 __all__ = ["CLEAR_MM", "Halt", "WayOut", "Ways", "ways_of", "ways_out"]
 

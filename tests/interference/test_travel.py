@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from articad.connectors import SE3
-from articad.interference.travel import Outline, _travels, first_contacts, material_met
 from articad.geometry import TriMesh
 from articad.geometry.shapes import box, cylinder, tube
 from articad.interference.body import body_of
 from articad.interference.overlap import distance, overlap
+from articad.interference.travel import Outline, _travels, first_contacts, material_met
 from tests.interference.mechanisms import random_rotation
 
 SHAPES = (box(4, 7, 11), cylinder(5, 9, 24), tube(4, 6, 8, 24))
