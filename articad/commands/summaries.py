@@ -138,7 +138,7 @@ def _free(way: Report) -> str:
     """Return a freedom that a joint leaves, such as `+z (2 mm)`."""
     unit = "rad" if way["way"].startswith("about") else "mm"
     told = [*([] if way["room"] is None else [f"{way['room']:.3g} {unit}"]), *(["against its weight"] if way["by_weight"] else [])]
-    return way["way"] + (f" ({', '.join(told)})" if told else "")
+    return f"{way['way']} ({', '.join(told)})" if told else str(way["way"])
 
 
 def _way(direction: list[float]) -> str:
