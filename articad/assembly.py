@@ -55,6 +55,7 @@ if TYPE_CHECKING:
 JointValue = float | Sequence[float]
 
 DEFLECTION_MM = 0.01  # meshes stay this close to their solids; interference tolerances are derived from it
+_FOLD_BUDGET_S = 60.0  # nominal seconds for the proof of a motion in an order of assembly
 _LIMIT_SLACK = 1e-9  # rad or mm: a value computed to be at its limit is at its limit
 
 
@@ -582,8 +583,22 @@ class Assembly:
         product = self.product()
         poses = Poses(product.mechanism.parts, product.mechanism.at_rest)
         return assembly_order(
-            product.scene(), poses, product.ground, name=product.name, others=end_poses(product.mechanism), fastenings=fastenings
+            product.scene(),
+            poses,
+            product.ground,
+            name=product.name,
+            others=end_poses(product.mechanism),
+            fastenings=fastenings,
+            mechanism=product.mechanism,
+            proof=product._proven,  # noqa: SLF001 - of the same class
         )
+
+    def _proven(self, mechanism: Mechanism, joint: str) -> bool:
+        """Return whether it is proven that no parts of a mechanism of these parts meet while a joint moves over its whole range."""
+        meshes = {name: mesh for name, mesh in self._meshes().items() if name in mechanism.parts}
+        waivers = [waiver for waiver in self.waivers if set(waiver.parts) <= set(meshes)]
+        deflections = {name: value for name, value in self._deflections().items() if name in meshes}
+        return certify(meshes, mechanism, joints=[joint], pairs=False, budget=_FOLD_BUDGET_S, deflection=deflections, waivers=waivers).ok
 
     def check_support(self) -> Support:
         """Examine whether the product stands, whether each part is carried, and what falls out when it is turned over.

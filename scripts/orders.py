@@ -25,7 +25,7 @@ import articad
 from articad.agents.pipeline import replay
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
-from articad.disassembly.poses import poses_at
+from articad.disassembly.opened import step_poses
 from articad.disassembly.steps import AssemblyOrder, Blocked
 from articad.disassembly.ways import Ways
 from articad.interference.body import body_of
@@ -126,7 +126,7 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
     for step in order.steps:
         if not step.moves:
             continue
-        poses = poses_at(assembly.mechanism, step.at)
+        poses = step_poses(assembly.mechanism, step, order.base)
         ways, permitted = Ways(scene, poses), {frozenset(pair[:2]) for pair in step.permitted}
         boxes = {name: np.array([(p := ways.points(name)).min(axis=0), p.max(axis=0)]) for name in (*step.parts, *step.onto)}
         beyond = np.zeros(3)
@@ -159,8 +159,6 @@ LOOKED: Final[Mapping[str, str]] = {
     "task:engine_radial": "Each rod comes off its pin to the front only, and is on a pin of its piston, which leaves its closed cylinder along that cylinder only.",
     "task:jack_scissor": "The screw turns on a neck in the bore of the trunnion, between its thread and its collar, which are wider; all is one piece.",
     "task:orrery_three": "The post is one piece with the base and with the sun at its top, which is wider than the eyes of the planets' arms on the post.",
-    "task:press_toggle": "Not confirmed: without lever and pull rod, the toggle folds to 57°, beyond its range of motion; the ram has then left the open end of its "
-    "rod, and ram and toggle come off to the front (no overlap in Booleans every 0.5° and 0.5 mm). The search moves a linkage within its ranges only.",
     "task:sarrus_lifter": "Each leaf is between two lugs whose pins reach into its eye from both sides; lugs, pins and plate are one piece, below as above.",
     "task:scotch_yoke_pump": "The crank pin is one piece with the disc below the block and with a head above it that is wider than the block's bore; the yoke's rods end "
     "in posts on both sides, which are one piece with the base.",

@@ -126,6 +126,9 @@ def print_order(report: Report, terminal: Terminal) -> None:
             continue
         path = ", then ".join(f"{_way(move['direction'])} by {move['length_mm']:.4g} mm" for move in step["moves"])
         forced = "".join(f", {a} and {b} by {how}" for a, b, how in step["permitted"])
+        forced += "".join(
+            f", with {name} turned over to {math.degrees(value):.0f}°" for name, value in step["at"].items() if step["opened"]
+        )
         terminal.say(f"{step['number']:3}. {step['assembly']}: {what} {path}; {step['strength']}{forced}")
     for blocked in report["blocked"]:
         terminal.say(f"No order puts these together: {', '.join(blocked['parts'])}.")

@@ -18,6 +18,7 @@ from scipy.sparse.csgraph import connected_components
 from articad.aliases import Fastening
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
+from articad.disassembly.opened import Proof, folded
 from articad.disassembly.poses import OtherPose
 from articad.disassembly.steps import AssemblyOrder, AssemblyStep, Blocked, Move, StopRow, Vector3
 from articad.disassembly.ways import Ways, distinct, ways_of
@@ -25,6 +26,7 @@ from articad.geometry.faces import faces_of
 from articad.interference.relations import Groups
 from articad.interference.scene import Scene
 from articad.kinematics.joints import JointType
+from articad.kinematics.mechanism import Mechanism
 
 __all__ = ["assembly_order"]
 
@@ -54,6 +56,8 @@ def assembly_order(
     name: str = "assembly",
     others: Sequence[OtherPose] = (),
     fastenings: Mapping[str, Fastening] | None = None,
+    mechanism: Mechanism | None = None,
+    proof: Proof | None = None,
 ) -> AssemblyOrder:
     """Return the order in which the parts go together.
 
@@ -66,8 +70,11 @@ def assembly_order(
         fastenings: By joint name how it is fastened, where a joint does not state it or another fastening is to be tried. Two parts that
             snap, are pressed together or held by a circlip do not stop each other. Purchased pairs are never taken apart. Screws and
             adhesive are only named.
+        mechanism: Places the parts. If it is given with `proof`, what remains of a loop that was opened is moved beyond the range that it
+            has in the whole product, as far as its parts let it.
+        proof: Proves such a motion; what it does not prove is not done.
     """
-    return _Taking(scene, poses, ground, name, others, fastenings or {}).order()
+    return _Taking(scene, poses, ground, name, others, fastenings or {}, None if proof is None else mechanism, proof).order()
 
 
 @dataclass(frozen=True)
@@ -80,6 +87,7 @@ class _Removal:
     at: dict[str, float]
     first: FloatArray
     key: tuple[float, ...] = field(compare=False)
+    opened: bool = False
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -97,8 +105,11 @@ class _Taking:
         name: str,
         others: Sequence[OtherPose],
         fastenings: Mapping[str, Fastening],
+        mechanism: Mechanism | None,
+        proof: Proof | None,
     ) -> None:
-        self.scene, self.name = scene, name
+        self.scene, self.name, self.poses = scene, name, poses
+        self.mechanism, self.proof = mechanism, proof
         self.joints = tuple(joint for joint in scene.relations.joints if joint.type is not JointType.FREE)
         stated = {joint.name: joint.fastening for joint in self.joints if joint.fastening is not None}
         self.fastenings: dict[str, Fastening] = {**stated, **fastenings}
@@ -139,7 +150,7 @@ class _Taking:
         """Yield the steps that put atoms together."""
         left, removed = list(atoms), []
         while len(left) > 1:
-            found = self._removable(left, base) or self._elsewhere(left, base) or self._in_two_moves(left, base)
+            found = self._removable(left, base) or self._elsewhere(left, base) or self._in_two_moves(left, base) or self._folded(left, base)
             if found is None:
                 apart = self._split(part for atom in left for part in atom)  # perhaps only single parts can leave
                 if len(apart) == len(left):
@@ -216,6 +227,7 @@ class _Taking:
             onto=tuple(placed),
             moves=tuple(moves),
             at=removal.at,
+            opened=removal.opened,
             joints=tuple(joint.name for joint in joints),
             fastened={joint.name: self.fastenings[joint.name] for joint in joints if joint.name in self.fastenings},
             strength="permitted" if forced else "proven",
@@ -259,6 +271,18 @@ class _Taking:
             found = self._removable(left, base, ways, at)
             if found is not None:
                 return found
+        return None
+
+    def _folded(self, left: Sequence[Atom], base: str) -> _Removal | None:
+        """Return what can leave when the rest of a loop that was opened is moved beyond the range that it has in the whole product."""
+        if self.mechanism is None or self.proof is None:
+            return None
+        parts = [name for atom in left for name in atom]
+        for pose in folded(self.scene, self.mechanism, parts, base):
+            ways = Ways(self.scene, {**self.poses, **pose.poses}, self.forced)
+            found = self._removable(left, base, ways, {pose.joint: pose.value})
+            if found is not None and self.proof(pose.mechanism, pose.joint):
+                return replace(found, opened=True)
         return None
 
     def _nearer(self, found: _Removal, staying: Sequence[str]) -> _Removal:

@@ -67,6 +67,7 @@ class AssemblyStep(_Form):
         onto: The parts that are in place.
         moves: The path; empty if nothing is in place yet.
         at: Values of the drivers at which the step is done, such as a door that stands open [rad, mm]; the others, and all if empty, at rest.
+        opened: Whether `at` is the value of a joint of what is there so far, which moves farther than in the whole product because a loop is still open.
         joints: Joints between the parts and those in place.
         fastened: How those of them are held together whose fastening is stated.
         strength: "proven": free of collision all along the path; "permitted": so but for pairs that are fastened by force, such as a snap, or bought as one.
@@ -81,6 +82,7 @@ class AssemblyStep(_Form):
     onto: tuple[str, ...]
     moves: tuple[Move, ...]
     at: dict[str, float] = Field(default_factory=dict)
+    opened: bool = False
     joints: tuple[str, ...] = ()
     fastened: dict[str, Fastening] = Field(default_factory=dict)
     strength: Literal["proven", "permitted"] = "proven"
@@ -112,7 +114,13 @@ def words_of(step: AssemblyStep) -> str:
         return f"Start with {what}."
     ways = [_way(move) for move in step.moves]
     over = ", with the assembly turned over or held up" if any(move.direction[2] > _UPWARDS for move in step.moves) else ""
-    return f"Put {what} in place: {', then '.join(ways)}{over}."
+    turned = f", with {' and '.join(_moved(*each) for each in step.at.items())}" if step.opened else ""
+    return f"Put {what} in place: {', then '.join(ways)}{over}{turned}."
+
+
+def _moved(joint: str, value: float) -> str:
+    """Return to which value a joint is moved for a step."""
+    return f"{joint} turned over to {math.degrees(value):.0f}°"
 
 
 def _way(move: Move) -> str:

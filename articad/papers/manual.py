@@ -16,7 +16,7 @@ import numpy as np
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
-from articad.disassembly.poses import poses_at
+from articad.disassembly.opened import step_poses
 from articad.disassembly.steps import AssemblyOrder, AssemblyStep, shown_path, words_of
 from articad.geometry.mesh import TriMesh
 from articad.kernels.views import Segment
@@ -183,7 +183,7 @@ class _Manual:
         return sheet
 
     def _value(self, driver: str, value: float) -> str:
-        unit = next(each.unit for each in self.product.drivers if each.name == driver)
+        unit = next(each.unit for each in self.product.mechanism.coordinates if each.name == driver)
         return f"move {driver} to {math.degrees(value):.4g}°" if unit == "rad" else f"move {driver} to {value:.4g} mm"
 
     def _lines(self, step: AssemblyStep) -> list[str]:
@@ -312,7 +312,7 @@ class _Manual:
         return found
 
     def _poses(self, step: AssemblyStep) -> Mapping[str, SE3]:
-        return poses_at(self.product.mechanism, step.at)
+        return step_poses(self.product.mechanism, step, self.order.base)
 
     def _scene(self, parts: Mapping[str, object], poses: Mapping[str, SE3], *, new: Sequence[str]) -> DrawnScene:
         scene = scene_of({name: self.product.parts[name] for name in parts}, poses)

@@ -92,7 +92,7 @@ def drawn_steps(assembly: Assembly, order: Json) -> Json:
                 "parts": [index[name] for name in step.parts],
                 "onto": [index[name] for name in step.onto],
                 "path": shown_path(step, size).tolist(),
-                "at": step.at,
+                "at": {} if step.opened else step.at,  # the page moves the whole; the text says how the rest of an opened loop is moved
                 "text": f"Step {step.number}: {words_of(step)}",
             }
             for step in AssemblyOrder.from_json(order).steps
