@@ -19,6 +19,8 @@ from articad.disassembly.opened import is_opened, remaining, step_poses
 from articad.disassembly.steps import AssemblyOrder, words_of
 from articad.interference.body import body_of
 from articad.interference.overlap import overlap
+from articad.papers.items import items_of
+from articad.papers.manual import manual_of
 from tests.interference.mechanisms import manifold_mesh
 
 NEAR = 0.15  # rad by which the lever turns from rest
@@ -191,3 +193,18 @@ def test_only_what_lacks_a_loop_is_opened() -> None:
     assert rest is not None
     assert [driver.joint for driver in rest.drivers] == ["crank"]
     assert remaining(mechanism, ("base", "rod"), "base") is None  # joints do not connect them
+
+
+def test_the_manual_says_and_shows_how_the_rest_is_turned() -> None:
+    assembly = CASES["bell crank"][0]().assembly()
+    order = assembly.assembly_order()
+    (step,) = [step for step in order.steps if step.opened]
+    value = math.degrees(step.at["crank"])
+    page = next(page for page in manual_of(assembly, order, items_of(assembly), dots=1.0) if page.told.get("step") == step.number)
+    words = " ".join(lettering.words for lettering in page.texts)
+    assert f"turned over to {value:.0f}°" in words
+    assert f"Before: move crank to {value:.4g}°." in words
+    turned = step_poses(assembly.mechanism, step, order.base)["crank"]
+    assert np.allclose(turned.rotation[:, 0], [math.cos(step.at["crank"]), math.sin(step.at["crank"]), 0], atol=1e-9)
+    others = [name for name in assembly.parts if name != "crank"]
+    assert all(np.allclose(step_poses(assembly.mechanism, step, order.base)[name].matrix, assembly.at()[name].matrix) for name in others)
