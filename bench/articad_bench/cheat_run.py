@@ -26,7 +26,7 @@ from articad_bench.reference import reference, reference_folder
 from articad_bench.shape_checks import placed
 from articad_bench.solids import occupied
 from articad_bench.subject import Subject
-from articad_bench.task import Task, read_task
+from articad_bench.task import Task, read_json, read_task
 
 __all__ = ["SCHEMA", "CheatRow", "page", "refused_by", "run_cheats"]
 
@@ -276,7 +276,7 @@ def _digest(folder: Path, task: Task) -> str:
 
 
 def _known(file: Path) -> list[CheatRow]:
-    return [CheatRow(**row) for row in json.loads(file.read_text())["rows"]] if file.is_file() else []
+    return [CheatRow(**row) for row in read_json(file)["rows"]] if file.is_file() else []
 
 
 def _save(out: Path, rows: Sequence[CheatRow], tasks: int) -> dict[str, Any]:

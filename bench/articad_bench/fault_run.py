@@ -14,6 +14,7 @@ from articad_bench.fault_trial import Row, Tools, examined, programs, tried
 from articad_bench.faulty import PRODUCTS, Fault, Product, chosen
 from articad_bench.plan_faults import PLAN_KINDS
 from articad_bench.script_faults import SCRIPT_KINDS
+from articad_bench.task import read_json
 
 __all__ = ["KINDS", "FaultRun"]
 
@@ -75,7 +76,7 @@ class FaultRun:
             tell: Called with each case and its outcome.
         """
         out.mkdir(parents=True, exist_ok=True)
-        stored = json.loads((out / _RESULTS).read_text()) if (out / _RESULTS).is_file() else {}
+        stored = read_json(out / _RESULTS) if (out / _RESULTS).is_file() else {}
         rows, alarms = _known(stored), dict(stored.get("alarms", {}))
         for fault in self.faults:
             row = rows.get(fault.digest)

@@ -25,7 +25,7 @@ from articad.errors import ArticadError, OutputError, TransportError
 from articad.runs.run import digest, write_atomically
 from articad_bench.scoring import model_of, subject_of
 from articad_bench.subject import Subject
-from articad_bench.task import Task
+from articad_bench.task import Task, read_image, read_json
 
 SCHEMA: Final = "articad.bench-opinion/1"
 DIMENSIONS: Final = ("geometry", "detail", "motion")
@@ -132,13 +132,13 @@ def judge_files(
 def opinions_in(folder: str | Path) -> list[Judged]:
     """Return the opinions that a folder holds, by judge and task."""
     files = sorted((Path(folder) / JUDGED).glob("*/*.json"))
-    return [Judged.from_json(json.loads(file.read_text(encoding="utf-8"))) for file in files]
+    return [Judged.from_json(read_json(file)) for file in files]
 
 
 def request_of(place: Path, task: Task, subject: Subject) -> tuple[Message, ...]:
     """Return what a judge is asked."""
     assembly = subject.assembly
-    given = [Image((place / image).read_bytes(), _MEDIA.get(Path(image).suffix.lower(), "image/png")) for image in task.images]
+    given = [Image(read_image(place, image), _MEDIA.get(Path(image).suffix.lower(), "image/png")) for image in task.images]
     shown: list[str | Image] = [f"The request:\n\n{task.prompt or '(no words; the picture says it)'}"]
     if given:
         shown += ["Pictures that belong to the request:", *given]
@@ -215,7 +215,7 @@ class _Tally:
 
 def _kept(file: Path, key: str) -> Judged | None:
     try:
-        judged = Judged.from_json(json.loads(file.read_text(encoding="utf-8")))
+        judged = Judged.from_json(read_json(file))
     except (OSError, ValueError, KeyError, TypeError):
         return None
     return judged if judged.key == key else None

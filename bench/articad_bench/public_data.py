@@ -10,7 +10,6 @@ These layouts are recognised, each by its files:
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,12 +21,13 @@ from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.connectors import SE3
 from articad.errors import ReadError
+from articad.files import PLAN_BYTES, read_file
 from articad.geometry import TriMesh, merged, read_mesh
 from articad.kinematics.joints import Joint, JointType
 from articad_bench.metrics import MovingJoint
 from articad_bench.scoring import subject_of
 from articad_bench.subject import Subject
-from articad_bench.task import Task
+from articad_bench.task import Task, read_json
 
 MM_PER_CM: Final = 10.0
 SAME_LINE: Final = 1e-3  # by which two axes that are one may differ: of their directions, and of the bodies' size
@@ -127,7 +127,9 @@ def shapes_in(folder: str | Path, *, measured: bool = False) -> list[ShapeSample
         files = [place / name for name in _TRUTHS if (place / name).is_file()]
         words = place / (_MEASURED if measured else _PROMPT)
         if files and words.is_file():
-            found.append(ShapeSample(place.name, place, words.read_text(encoding="utf-8", errors="replace").strip(), files[0]))
+            found.append(
+                ShapeSample(place.name, place, read_file(words, PLAN_BYTES, root=place).decode(errors="replace").strip(), files[0])
+            )
     if not found:
         raise _refused(Path(folder), f"It holds no sample of CADPrompt, which is a folder with {_TRUTHS[0]} and {_PROMPT}.")
     return found
@@ -206,7 +208,7 @@ def _mobility(file: Path) -> TrueObject:
 
 def _acd(file: Path) -> TrueObject:
     """Read an object of ACD: triangles by part, and the articulations of parts."""
-    stored = json.loads(file.read_text(encoding="utf-8-sig"))
+    stored = read_json(file)
     meshes = _glb(file.with_name(f"{file.parent.name}.glb"))
     parts = {int(part["partInfo"]["partId"]): part["partInfo"]["meshTri"] for part in stored["parts"] if part}
     joints = []
@@ -241,7 +243,7 @@ def _corners(meshes: Sequence[TriMesh], rows: Mapping[str, Any]) -> FloatArray:
 
 def _fusion(file: Path) -> TrueObject:
     """Read a pair of bodies with the first joint between them: body one moves against body two."""
-    stored = json.loads(file.read_text(encoding="utf-8"))
+    stored = read_json(file)
     joint = stored["joints"][0]
     sides = (joint["geometry_or_origin_one"], joint["geometry_or_origin_two"])
     names = (stored["body_one"], stored["body_two"])

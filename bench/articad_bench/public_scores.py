@@ -7,7 +7,6 @@ sampling; the table states the standard deviation of its means over these seeds.
 
 from __future__ import annotations
 
-import json
 import math
 import statistics
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -34,6 +33,7 @@ from articad_bench.numbers import mean_of, median_of, share_of
 from articad_bench.public_data import ObjectSample, ShapeSample, TrueObject, object_of
 from articad_bench.row import ROW
 from articad_bench.scoring import model_of, subject_of
+from articad_bench.task import read_json
 
 SCHEMA: Final = "articad.bench-data/1"
 _MESHES: Final = (".stl", ".obj", ".ply", ".glb")
@@ -157,7 +157,7 @@ def _object_of(name: str, folder: Path) -> TrueObject:
 
 def _effort(name: str, folder: Path) -> dict[str, Any]:
     try:
-        row = json.loads((folder / name / ROW).read_text(encoding="utf-8"))
+        row = read_json(folder / name / ROW)
     except (OSError, ValueError):
         return {}
     return {key: row[key] for key in (*_EFFORT, "cost")}

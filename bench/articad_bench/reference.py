@@ -9,6 +9,7 @@ from typing import Final
 from articad import examples
 from articad.assembly import Assembly
 from articad.errors import ReadError
+from articad.files import SCRIPT_BYTES, read_file
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import SCRIPT_SUFFIX
@@ -75,4 +76,4 @@ def _scripts(folders: Sequence[Path], plan: AssemblyPlan, kernel: PartKernel) ->
     suffix = SCRIPT_SUFFIX[kernel.name]
     names = [name for name, part in resolve(plan).parts.items() if part.derivation is None]
     files = {name: next((file for folder in folders if (file := folder / f"{name}{suffix}").is_file()), None) for name in names}
-    return {name: file.read_bytes() for name, file in files.items() if file is not None}
+    return {name: read_file(file, SCRIPT_BYTES, root=file.parent) for name, file in files.items() if file is not None}

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from articad.runs.run import write_atomically
 from articad_bench.checks import Judgement
-from articad_bench.task import Task
+from articad_bench.task import Task, read_json
 
 SCHEMA: Final = "articad.bench-row/1"
 ROW: Final = "row.json"
@@ -96,7 +96,7 @@ class Row:
 def kept_row(place: Path, key: str) -> Row | None:
     """Return the row of a task's folder, if it was made of the same task in the same way."""
     try:
-        row = Row.from_json(json.loads((place / ROW).read_text(encoding="utf-8")))
+        row = Row.from_json(read_json(place / ROW))
     except (OSError, ValueError, KeyError, TypeError):
         return None
     return row if row.key == key else None
@@ -111,5 +111,5 @@ def keep_row(place: Path, row: Row) -> None:
 def rows_in(out: str | Path, names: Sequence[str] = ()) -> list[Row]:
     """Return the rows that a folder of runs holds, by name."""
     files = sorted(Path(out).glob(f"*/{ROW}"))
-    rows = [Row.from_json(json.loads(file.read_text(encoding="utf-8"))) for file in files]
+    rows = [Row.from_json(read_json(file)) for file in files]
     return [row for row in rows if not names or row.task in names]

@@ -27,7 +27,7 @@ from articad.runs.record import assembly_of
 from articad.runs.run import Run, digest
 from articad_bench.row import Row, keep_row, kept_row
 from articad_bench.subject import Subject
-from articad_bench.task import Task
+from articad_bench.task import Task, read_image
 
 Ask = Callable[[Task], LLM]
 """Who answers a task's requests."""
@@ -114,7 +114,7 @@ class _Made:
         """Return what comes of it."""
         task, row, started = self._task, Row.of(self._task, self._key), time.monotonic()
         try:
-            images = [self._folder / image for image in task.images]
+            images = [read_image(self._folder, image) for image in task.images]
             run = generate(task.prompt, llm=self._asks[0](task), images=images, out=self._run, options=options, services=services)
             assembly = assembly_of(run, cache=services.cache)
             row = replace(row, judgements=task.judge(Subject(assembly)))

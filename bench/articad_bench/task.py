@@ -31,9 +31,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import AfterValidator, Field, ValidationError
 
 from articad.errors import ReadError, did_you_mean
 from articad.files import RECORD_BYTES, read_file
@@ -84,6 +84,15 @@ class Edit(PlanObject):
     reference: str | None = None
 
 
+def _is_name(text: str) -> str:
+    if not text or set(text) <= {"."} or any(sign in text for sign in "/\\\0"):
+        raise ValueError("a name without folders is needed")
+    return text
+
+
+_Name = Annotated[str, AfterValidator(_is_name)]
+
+
 class Task(PlanObject):
     """One task of the benchmark.
 
@@ -101,11 +110,11 @@ class Task(PlanObject):
     """
 
     form: Literal["articad.task/1"] = Field(default="articad.task/1", alias="schema")
-    name: str
+    name: _Name
     kind: Kind
     product: str
     prompt: str = ""
-    images: tuple[str, ...] = ()
+    images: tuple[_Name, ...] = ()
     drawing: Drawing | None = None
     checks: tuple[AnyCheck, ...]
     edit: Edit | None = None
@@ -141,6 +150,31 @@ class Task(PlanObject):
         return tuple(check.judge(subject) for check in self.edit_checks)
 
 
+def read_json(file: Path) -> Any:
+    """Return what a JSON file of somebody's tasks, runs or results holds: a regular file within bounds, and no link.
+
+    Raises:
+        OSError: If it is missing or refused.
+        ValueError: If it is not JSON.
+    """
+    try:
+        return json.loads(read_file(file, RECORD_BYTES, root=file.parent))
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+
+
+def read_image(folder: Path, name: str) -> bytes:
+    """Return a picture of a task. Pictures are sent to models, so it lies in the task's folder, and no link leads to it.
+
+    Raises:
+        ReadError: If it is missing or refused.
+    """
+    try:
+        return read_file(folder / name, RECORD_BYTES, root=folder)
+    except OSError as error:
+        raise ReadError.at(folder / name, f"The picture cannot be read: {error.strerror}.", "Put a file there.") from None
+
+
 def read_task(folder: str | Path) -> Task:
     """Read `task.json` of a folder.
 
@@ -149,7 +183,7 @@ def read_task(folder: str | Path) -> Task:
     """
     file = Path(folder) / "task.json"
     try:
-        return Task.model_validate(json.loads(file.read_text(encoding="utf-8")))
+        return Task.model_validate(read_json(file))
     except OSError as error:
         raise ReadError.at(file, f"There is no task: {error.strerror}.", "Name a folder with a task.json.") from error
     except ValidationError as error:
@@ -169,7 +203,7 @@ def write_task(task: Task, folder: Path, *, beside: Path) -> tuple[Path, Task]:
         beside: Where its pictures are.
     """
     for image in task.images:
-        scratch.write(folder / image, read_file(beside / image, RECORD_BYTES))
+        scratch.write(folder / image, read_image(beside, image))
     text = task.model_dump_json(by_alias=True, exclude_defaults=True, indent=1)
     scratch.write(folder / "task.json", f"{text}\n".encode())
     return folder, task

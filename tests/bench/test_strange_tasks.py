@@ -1,0 +1,98 @@
+"""Tasks, rows and opinions of strangers: nothing outside their folder is read, least of all sent to a model, and nothing blocks."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from articad.errors import ReadError
+from articad_bench.judge import JUDGED, opinions_in
+from articad_bench.row import ROW, kept_row, rows_in
+from articad_bench.task import read_image, read_json, read_task, write_task
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no pipes in folders")
+SECRET = "the first words of a secret"
+TASK = {"name": "t", "kind": "articulated", "product": "box", "prompt": "a box", "checks": [{"kind": "parts", "number": [1, 9]}]}
+
+
+@pytest.fixture(autouse=True)
+def soon() -> Iterator[None]:
+    """Interrupt what blocks."""
+
+    def interrupt(*_: object) -> None:
+        raise AssertionError("it blocks")
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.alarm(60)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+@pytest.fixture
+def task(tmp_path: Path) -> Path:
+    (tmp_path / "secret.png").write_text(SECRET)
+    (tmp_path / "task").mkdir()
+    return tmp_path / "task"
+
+
+@pytest.mark.parametrize("image", ["../secret.png", "/etc/passwd", "..", "", "a/../../secret.png", "a\\b", "a\0b"])
+def test_a_task_names_no_picture_outside_its_folder(image: str, task: Path) -> None:
+    (task / "task.json").write_text(json.dumps(TASK | {"images": [image]}))
+    with pytest.raises(ReadError, match="images") as error:
+        read_task(task)
+    assert SECRET not in error.value.message
+
+
+@pytest.mark.parametrize("name", ["../t", "/t", "..", ""])
+def test_a_task_has_no_name_that_is_a_place_elsewhere(name: str, task: Path) -> None:
+    (task / "task.json").write_text(json.dumps(TASK | {"name": name}))
+    with pytest.raises(ReadError, match="name"):
+        read_task(task)
+
+
+@pytest.mark.parametrize("kind", ["link", "pipe", "folder", "missing"])
+def test_a_picture_that_is_no_file_of_its_folder_is_refused(kind: str, task: Path, tmp_path: Path) -> None:
+    (task / "task.json").write_text(json.dumps(TASK | {"images": ["a.png"]}))
+    if kind == "link":
+        (task / "a.png").symlink_to(tmp_path / "secret.png")
+    elif kind == "pipe":
+        os.mkfifo(task / "a.png")
+    elif kind == "folder":
+        (task / "a.png").mkdir()
+    for use in (lambda: read_image(task, "a.png"), lambda: write_task(read_task(task), tmp_path / "copy", beside=task)):
+        with pytest.raises(ReadError, match="picture"):
+            use()
+    assert not (tmp_path / "copy" / "a.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("place", "reader"),
+    [
+        ("task.json", read_task),
+        (ROW, lambda folder: rows_in(folder.parent)),
+        (f"{JUDGED}/j/t.json", opinions_in),
+        ("any.json", lambda folder: read_json(folder / "any.json")),
+    ],
+)
+@pytest.mark.parametrize("kind", ["link", "pipe", "device", "nested"])
+def test_what_is_no_regular_file_of_json_is_refused(kind: str, place: str, reader: Callable[[Path], object], task: Path) -> None:
+    file = task / place
+    file.parent.mkdir(parents=True, exist_ok=True)
+    if kind == "link":
+        file.symlink_to(task.parent / "secret.png")
+    elif kind == "pipe":
+        os.mkfifo(file)
+    elif kind == "device":
+        file.symlink_to("/dev/zero")
+    else:
+        file.write_text("[" * 100_000)
+    assert kept_row(task, "k") is None
+    with pytest.raises((ReadError, OSError, ValueError)) as error:
+        reader(task)
+    assert SECRET not in str(error.value)
