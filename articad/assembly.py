@@ -41,6 +41,7 @@ from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import DrivenMotion, FeasibleRange
 from articad.kinematics.reach import Reach
 from articad.kinematics.solution import Solution
+from articad.plan.amending import amended
 from articad.plan.check import admitted
 from articad.plan.iso2768 import ToleranceClass
 from articad.plan.resolve import Fit, Material, ResolvedPart, ResolvedPlan, Waiver
@@ -278,6 +279,30 @@ class Assembly:
         return Assembly.from_plan(
             self.resolved.plan, scripts, kernel=self._kernel, cache=self._cache, deflection=self.deflection, parameters=parameters
         )
+
+    def with_changes(self, changes: Mapping[str, Any], *, build: bool = True) -> Assembly:
+        """Return the assembly of the plan with some of its values replaced; only parts whose numbers changed are built again.
+
+        Args:
+            changes: New values by address, as `articad.plan.amending.amended` takes them.
+            build: Whether to build parts again; without it they stay as they are, as befits changes of limits and couplings.
+
+        Raises:
+            PlanError: If there is no plan, or the changed one is not valid.
+            ReadError: If the plan has nothing at an address.
+            ContractError: If a part cannot be built.
+        """
+        if self.resolved is None:
+            raise PlanError("This assembly was not made from a plan, so nothing of it can be changed.")
+        plan = AssemblyPlan.from_json(amended(self.resolved.plan.to_json(), changes))
+        overrides = {name: value for name, value in self.resolved.overrides.items() if f"parameters.{name}.value" not in changes}
+        if not build:
+            resolved, _ = admitted(plan, **overrides)
+            return Assembly.from_realised(
+                resolved, self.realised, kernel=self._kernel, cache=self._cache, deflection=self.deflection, findings=self.findings
+            )
+        scripts = {name: part.script for name, part in self.realised.items() if part.script is not None}
+        return Assembly.from_plan(plan, scripts, kernel=self._kernel, cache=self._cache, deflection=self.deflection, parameters=overrides)
 
     @property
     def environment(self) -> frozenset[str]:

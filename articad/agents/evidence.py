@@ -14,6 +14,7 @@ from typing import Final
 from articad.agents.numbers import placed, short
 from articad.agents.orders import HELD, addressed
 from articad.agents.travel import travels
+from articad.agents.trials import with_trials
 from articad.arrays import FloatArray
 from articad.assembly import Assembly, Poses
 from articad.certificates.fits import FitCheck
@@ -76,8 +77,14 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
 
     Returns:
         The checks of the rest pose, and a sampled verdict for every pair that meets in motion. Findings go to whoever is proven to have made the
-        fault (`articad.agents.orders`).
+        fault (`articad.agents.orders`). The first that goes to the designer states changes that end all of them (`articad.agents.trials`).
     """
+    found = _examined(assembly, known)
+    checks = replace(found.checks, findings=with_trials(found.checks.findings, assembly, lambda other: _examined(other).findings))
+    return replace(found, checks=checks)
+
+
+def _examined(assembly: Assembly, known: Known | None = None) -> Evidence:
     scene = assembly.scene()
     checks = assembly.check(known=None if known is None else known.rest)
     joints, at_rest = Findings(), checks.pairs

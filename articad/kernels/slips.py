@@ -25,7 +25,7 @@ from articad.plan.schema import AssemblyPlan
 from articad.plan.usage import CLEARANCE, SIZE
 from articad.processes import scratch
 
-__all__ = ["UNITS", "explained"]
+__all__ = ["UNITS", "explained", "numbers_of"]
 
 _OF_NUMBERS: Final = frozenset({"E_SCRIPT_ERROR", "E_NOT_ONE_SOLID", "E_EMPTY_SOLID", "E_INVALID_SOLID", "E_CONNECTOR_DRIFT"})
 _OF_SCRIPTS: Final = ("KeyError", "NameError", "SyntaxError", "ImportError", "AttributeError", "ModuleNotFoundError", "IndentationError")
@@ -118,7 +118,7 @@ def _slips(resolved: ResolvedPlan, name: str, *, signs_only: bool, only_odd: boo
     """
     part = resolved.parts[name]
     lengths = {key: float(value) for key, value in part.dimensions.items() if not key.endswith(("_deg", "_count"))}
-    numbers = {address: number for address, number in _numbers(resolved, name, lengths).items() if not CLEARANCE.search(address)}
+    numbers = {address: number for address, number in numbers_of(resolved, name, lengths).items() if not CLEARANCE.search(address)}
     for address, (value, driven) in numbers.items():
         if value < 0.0 or (signs_only and not SIZE.search(address.removesuffix(".value"))):
             yield _Slip(address, value, -value, "is its sign wrong?", driven)
@@ -135,7 +135,7 @@ def _slips(resolved: ResolvedPlan, name: str, *, signs_only: bool, only_odd: boo
                 yield _Slip(address, value, value / factor, "were micrometres given?", driven)
 
 
-def _numbers(resolved: ResolvedPlan, name: str, lengths: Mapping[str, float]) -> dict[str, tuple[float, frozenset[str]]]:
+def numbers_of(resolved: ResolvedPlan, name: str, lengths: Mapping[str, float]) -> dict[str, tuple[float, frozenset[str]]]:
     """Return the numbers that a part's lengths follow from, by address, each with the dimensions that follow from it."""
     found: dict[str, tuple[float, set[str]]] = {}
     spec = resolved.parts[name].spec

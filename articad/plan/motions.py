@@ -164,8 +164,31 @@ def _check_range(
             hint = f"This joint rests at zero: widen {axis.range} to {widened}."
         else:
             hint = f"Set {axis.rest} to {nearest:.12g}, or {axis.range} to {widened}."
+        hint = f"{_slip(limits, rest, unit)}{hint}"
         message = f"The joint rests at {rest:.6g} {unit}, outside its limits {given}."
         evaluation.report("E_REST_OUTSIDE_LIMITS", path, message, hint, value=rest, limit=nearest, unit=unit)
+
+
+def _slip(limits: tuple[float, float], rest: float, unit: str) -> str:
+    """Return the advice to give limits in degrees, or with the other sign, that then contain the rest value; empty if neither does."""
+    low, high = (round(math.degrees(limit), 3) + 0.0 for limit in limits)
+    if unit == "deg" and _look_like_radians(limits) and low <= rest <= high:
+        return f"If radians were meant, give {_shown((low, high))}. "
+    if -limits[1] - _SLACK <= rest <= -limits[0] + _SLACK:
+        return f"If the sign is wrong, give {_shown((0.0 - limits[1], 0.0 - limits[0]))}. "
+    return ""
+
+
+def _shown(limits: tuple[float, float]) -> str:
+    return f"[{limits[0]:.12g}, {limits[1]:.12g}]"
+
+
+def _look_like_radians(limits: Sequence[float]) -> bool:
+    """Return whether limits [deg] are all within a turn in radians and uneven, or even angles only if they were given in radians."""
+    sizes = [abs(limit) for limit in limits if limit != 0.0]
+    largest = max(sizes, default=0.0)
+    is_uneven = 0.0 < largest <= RADIANS_UP_TO and any(size != int(size) for size in sizes)
+    return is_uneven or (bool(sizes) and all(map(_is_round_in_radians, sizes)))
 
 
 def _check_degrees(limits: Sequence[float], path: str, evaluation: Evaluation, *, many_turns: bool = False) -> None:
@@ -177,7 +200,7 @@ def _check_degrees(limits: Sequence[float], path: str, evaluation: Evaluation, *
         message = f"Limits {shown} exceed two turns."
         hint = 'Give degrees within [-720, 720], or "endless" if the joint turns freely.'
         evaluation.report("W_LIMITS_UNITS", path, message, hint, value=largest, limit=TWO_TURNS, unit="deg")
-    elif (0.0 < largest <= RADIANS_UP_TO and any(size != int(size) for size in sizes)) or (sizes and all(map(_is_round_in_radians, sizes))):
+    elif _look_like_radians(limits):
         degrees = [round(math.degrees(limit), 3) + 0.0 for limit in limits]
         meant = f"[{', '.join(f'{limit:g}' for limit in degrees)}]" if len(limits) > 1 else f"{degrees[0]:g}"
         message = f"{shown} looks like radians; degrees are expected."

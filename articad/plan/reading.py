@@ -237,7 +237,7 @@ def _unknown_key(where: str, key: str, owner: type[PlanObject] | None, raw_owner
         hint = f"A {kind} joint has {', '.join(own)}." if own else f"A {kind} joint has no limits: remove {key}, or change its type."
         return _finding("E_LIMITS_KIND", where, f"{key!r} does not belong to a {kind} joint.", hint)
     closest = did_you_mean(key, allowed).strip()
-    hint = f"{closest} Allowed here: {', '.join(allowed)}.".strip()
+    hint = f"{closest} Allowed here: {', '.join(allowed)}. Otherwise leave it out.".strip()
     return _finding("E_SCHEMA", where, f"There is no field {key!r} here.", hint)
 
 

@@ -2,14 +2,15 @@
 
 A mistake in one place of a plan shows in several: each joint that meets there reports its own numbers, and to follow all of them one after
 another does not lead back. So mistakes are tried in reverse: a pose or connector is shifted by what connectors are apart, axes are reversed
-or exchanged, poses of two parts and the two ends of joints are exchanged, copies are put on the other side. A change is offered only if the
-whole check of the plan then finds nothing. It need not be the one that was meant: geometry is not known here.
+or exchanged, poses of two parts and the two ends of joints are exchanged, copies are put on the other side, couplings get the other sense
+or ratio, limits the other sign. A change is offered only if the whole check of the plan then finds nothing. It need not be the one that was meant: geometry is not known here.
 """
 
 from __future__ import annotations
 
 import itertools
 import json
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Final
@@ -28,12 +29,16 @@ from articad.plan.draft import Draft
 from articad.plan.rest import identity_or
 from articad.plan.schema import AssemblyPlan, PartSpec, Pose
 
-__all__ = ["advised", "remedies"]
+__all__ = ["Changes", "advised", "digits", "of_couplings", "offered", "remedies", "with_other_sign"]
 
 Changes = Mapping[str, Any]
 """New values by address, as `articad.plan.amending.amended` takes them."""
 
 _MATES: Final = frozenset({"E_MATE_OFFSET", "E_MATE_FLIP", "E_MATE_TILT", "E_MATE_ROLL"})
+_RANGES: Final = frozenset({"E_LOOP_LIMIT", "E_DEAD_POINT", "E_REST_OUTSIDE_LIMITS"})
+_OF_NUMBERS: Final = _RANGES | {"E_PARAMETER_BOUNDS", "E_ENVELOPE_VALUE"}
+_SOUGHT: Final = _MATES | _OF_NUMBERS | {"E_DISCONNECTED", "E_DOF_MISMATCH"}
+"""Codes of findings for which changes are sought."""
 _TRIALS: Final = 160  # checks of a plan with findings
 _OFFERED: Final = 3  # changes that a hint states
 _LEAST_MM: Final = 0.01  # as far as connectors may be apart
@@ -55,13 +60,16 @@ def advised(plan: AssemblyPlan) -> Findings:
     changes = remedies(plan, serious)
     if not changes:
         return found
-    offered = " or ".join(json.dumps(change) for change in changes)
-    what = f"all {len(serious)} findings" if len(serious) > 1 else "this finding"
     first = serious[0]
-    told = replace(
-        first, hint=f"{'One change ends' if len(changes) == 1 else 'Any of these changes alone ends'} {what}: {offered}. {first.hint}"
-    )
+    told = replace(first, hint=f"{offered(changes, len(serious))} {first.hint}")
     return Findings(told if finding is first else finding for finding in found)
+
+
+def offered(changes: Sequence[Changes], findings: int) -> str:
+    """Return the advice to make one of some changes, each of which ends so many findings."""
+    what = f"all {findings} findings" if findings > 1 else "this finding"
+    how = "One change ends" if len(changes) == 1 else "Any of these changes alone ends"
+    return f"{how} {what}: {' or '.join(json.dumps(change) for change in changes)}."
 
 
 def remedies(plan: AssemblyPlan, findings: Iterable[Finding]) -> list[Changes]:
@@ -69,10 +77,10 @@ def remedies(plan: AssemblyPlan, findings: Iterable[Finding]) -> list[Changes]:
 
     Args:
         plan: A plan with findings.
-        findings: Its errors and warnings; changes are sought where connectors do not meet or parts are not connected.
+        findings: Its errors and warnings; changes are sought where connectors do not meet, parts are not connected, or ranges cannot be reached.
     """
     several = list(findings)
-    if not any(finding.code in _MATES or finding.code in {"E_DISCONNECTED", "E_DOF_MISMATCH"} for finding in several):
+    if _SOUGHT.isdisjoint(finding.code for finding in several):
         return []
     whole, draft = plan.to_json(), Draft(plan)
     found: dict[str, Changes] = {}
@@ -108,6 +116,14 @@ def _candidates(draft: Draft, whole: Json, findings: Sequence[Finding]) -> Itera
     apart = [joints[name] for one in findings if one.code in _MATES and (name := one.where.removeprefix("joints.")) in joints]
     apart = list(dict.fromkeys(apart))
     about = dict.fromkeys(name for one in findings for name in one.parts if name in draft.parts)
+    codes = {one.code for one in findings}
+    if codes & _RANGES:
+        yield from ((".".join(next(iter(change)).split(".")[:2]), change) for change in of_couplings(whole))
+        yield from _limits(draft, whole, findings)
+    if codes & _OF_NUMBERS:
+        yield from _units(whole)
+    if not codes & (_SOUGHT - _OF_NUMBERS):
+        return
     yield from _structure(draft, whole, findings)
     yield from _copies(whole, draft, about)
     yield from _exchanged(draft, about)
@@ -124,6 +140,67 @@ def _candidates(draft: Draft, whole: Json, findings: Sequence[Finding]) -> Itera
 
 
 # ---------------------------------------------------------------- structure
+
+
+def of_couplings(whole: Json) -> Iterator[Changes]:
+    """Yield couplings of the other sense, or of another ratio: exchanged, halved and doubled."""
+    for coupling in whole.get("couplings", ()):
+        where = f"couplings.{coupling['name']}"
+        for key in ("ratio", "lead_mm"):
+            if key in coupling:
+                value = coupling[key]
+                yield from ({f"{where}.{key}": other} for other in (_minus(value), _times(value, 0.5), _times(value, 2.0)))
+        for key in ("teeth", "radii_mm"):
+            if isinstance(coupling.get(key), list):
+                yield {f"{where}.{key}": coupling[key][::-1]}
+        if coupling["type"] == "gear":
+            yield {f"{where}.internal": not coupling.get("internal", False)}
+
+
+def _times(value: Any, factor: float) -> Any:
+    return f"({value}) * {factor:g}" if isinstance(value, str) else value * factor
+
+
+def _limits(draft: Draft, whole: Json, findings: Iterable[Finding]) -> Iterator[tuple[str, Changes]]:
+    """Yield limits of joints with the other sign, and limits as wide about the rest value that they do not contain."""
+    for joint in whole["joints"]:
+        for change in with_other_sign(whole, joint["name"]):
+            yield f"limits of {joint['name']}", change
+    numbers = {joint.name: joint.limits for joint in draft.joints if len(joint.limits.lower) == 1}
+    for one in findings:
+        name = one.where.split(".")[1] if one.code == "E_REST_OUTSIDE_LIMITS" else ""
+        if name in numbers and one.value is not None:
+            half = (numbers[name].upper[0] - numbers[name].lower[0]) / 2.0
+            half = math.degrees(half) if one.unit == "deg" else half
+            yield f"limits of {name}", {one.where: _numbers(np.array([one.value - half, one.value + half]))}
+
+
+def with_other_sign(whole: Json, name: str) -> Iterator[Changes]:
+    """Yield the limits of a joint with the other sign."""
+    joint: Json = next((joint for joint in whole["joints"] if joint["name"] == name), {})
+    for key in ("angle_deg", "travel_mm"):
+        if isinstance(joint.get(key), list):
+            low, high = joint[key]
+            if str(low) != str(_minus(high)):
+                yield {f"joints.{name}.{key}": [_minus(high), _minus(low)]}
+
+
+def _units(whole: Json) -> Iterator[tuple[str, Changes]]:
+    """Yield parameters that were given in another unit: those outside their bounds first, then those that get a rounder number."""
+    lengths = [one for one in whole.get("parameters", ()) if isinstance(one["value"], int | float) and one.get("unit", "mm") == "mm"]
+    trials = [(one, round(one["value"] * factor, _DECIMALS)) for one in lengths for factor in (25.4, 1000.0, 0.001)]
+    for parameter, value in sorted(trials, key=lambda trial: (_is_within_bounds(trial[0]), digits(trial[1]) >= digits(trial[0]["value"]))):
+        yield f"unit of {parameter['name']}", {f"parameters.{parameter['name']}.value": value}
+
+
+def _is_within_bounds(parameter: Json) -> bool:
+    low, high = (bound if isinstance(bound := parameter.get(key), int | float) else parameter["value"] for key in ("min", "max"))
+    return bool(low <= parameter["value"] <= high)
+
+
+def digits(value: float) -> int:
+    """Return how many significant digits a number has, of six."""
+    return len(f"{abs(value):.5e}".partition("e")[0].replace(".", "").rstrip("0"))
 
 
 _Free = tuple[str, str, str]  # part, connector and kind of a connector that no joint uses

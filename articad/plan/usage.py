@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Collection, Sequence
 
 import numpy as np
@@ -301,7 +301,10 @@ def _dimensions(draft: Draft) -> list[Finding]:
         least = LEAST_CLEARANCE_MM if CLEARANCE.search(name) or "offset" in name else THINNEST_MM
         if NOISE_MM < length < least:
             message = f"Dimension {name!r} of {part} is {length:.6g} mm."
-            hint = f"Lengths are millimetres: were metres given? Then it is {length * 1000.0:.6g}; or make it at least {least:g} mm."
+            hint = (
+                f"Lengths are millimetres: were metres given? Then it is {length * 1000.0:.6g}; {_as_elsewhere(draft, part, name, least)}"
+                f"or make it at least {least:g} mm."
+            )
             found.append(_dimension_finding(part, name, message, hint, value=length, limit=least))
     longest = max((length for length, _, _ in lengths), default=0.0)
     next_longest = max((length for length, _, _ in lengths if length * LONGEST_SHARE < longest), default=0.0)
@@ -312,6 +315,17 @@ def _dimensions(draft: Draft) -> list[Finding]:
             hint = f"Lengths are millimetres: were micrometres given? Then it is {longest / 1000.0:.6g}."
             found.append(_dimension_finding(part, name, message, hint, value=longest, limit=LONGEST_SHARE * next_longest))
     return found
+
+
+def _as_elsewhere(draft: Draft, part: str, name: str, least: float) -> str:
+    """Return the advice to give a dimension the value that most parts with one of this name have, those joined to this part first."""
+    joined = {end for joint in draft.joints for end in (joint.parent, joint.child) if part in (joint.parent, joint.child)}
+    others = {one: abs(held[name]) for one, held in draft.dimensions.items() if one != part and abs(held.get(name, 0.0)) >= least}
+    if not others:
+        return ""
+    counts = Counter(others.values())
+    nearest = min(others, key=lambda one: (one not in joined, -counts[others[one]]))
+    return f"or make it {others[nearest]:.6g}, as {name!r} of {nearest} is; "
 
 
 def _negative(part: str, name: str, value: float) -> Finding:
