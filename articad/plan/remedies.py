@@ -51,6 +51,11 @@ _MOVING: Final = {
     "ball_centre": "ball",
 }
 """Types of joints that suit a kind of connector without limits."""
+_LIMITED: Final[Mapping[str, Json]] = {
+    "slide_axis": {"type": "slider", "travel_mm": [0, 100]},
+    "thread_axis": {"type": "screw", "lead_mm": 2, "angle_deg": [0, 360]},
+}
+"""Joints that suit other kinds, with examples of limits."""
 
 
 def advised(plan: AssemblyPlan) -> Findings:
@@ -69,7 +74,9 @@ def offered(changes: Sequence[Changes], findings: int) -> str:
     """Return the advice to make one of some changes, each of which ends so many findings."""
     what = f"all {findings} findings" if findings > 1 else "this finding"
     how = "One change ends" if len(changes) == 1 else "Any of these changes alone ends"
-    return f"{how} {what}: {' or '.join(json.dumps(change) for change in changes)}."
+    told = " or ".join(json.dumps(change) for change in changes)
+    examples = any(json.dumps(form)[1:-1].partition(", ")[2] in told for form in _LIMITED.values())
+    return f"{how} {what}: {told}.{' The limits of the joint are examples: give those that are meant.' if examples else ''}"
 
 
 def remedies(plan: AssemblyPlan, findings: Iterable[Finding]) -> list[Changes]:
@@ -216,8 +223,9 @@ def _structure(draft: Draft, whole: Json, findings: Sequence[Finding]) -> Iterat
     if any(one.code == "E_DISCONNECTED" for one in findings):
         yield from _further_joints(draft, free)
     kinds = {f"{part}.{name}": kind for part, name, kind in every}
-    for joint in own:
-        for form in _forms(kinds.get(joint["child"], "")) if joint["type"] == "fixed" else ():
+    for joint in (joint for joint in own if joint["type"] == "fixed"):
+        ends = dict.fromkeys(kinds.get(joint[end], "") for end in ("child", "parent"))
+        for form in (form for kind in ends for form in _forms(kind)):
             if form["type"] != "fixed":
                 yield f"type of {joint['name']}", {f"joints.{joint['name']}.{key}": value for key, value in form.items()}
 
@@ -238,7 +246,9 @@ def _further_joints(draft: Draft, free: Sequence[_Free]) -> Iterator[tuple[str, 
 
 
 def _forms(kind: str) -> Iterator[Json]:
-    """Yield joints without limits that suit a kind of connector."""
+    """Yield joints that suit a kind of connector, without limits where they need none."""
+    if kind in _LIMITED:
+        yield dict(_LIMITED[kind])
     moving = _MOVING.get(kind)
     if moving is not None:
         yield {"type": moving} | ({"angle_deg": "endless"} if moving == "revolute" else {})

@@ -7,6 +7,7 @@ connector is stated.
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -17,11 +18,12 @@ from articad.findings import Finding
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.derive import DraftPart
 from articad.plan.draft import Draft
-from articad.plan.schema import PartSpec, Pose
+from articad.plan.schema import DerivedJoint, PartSpec, Pose
 
 OFFSET_MM = 0.01  # covers the rounding of numbers in plans, and is far below any fit
 ANGLE_DEG = 0.05  # 0.9 mm at one metre: axes rounded to four digits pass
 _TURN_FIELD = {JointType.REVOLUTE: "rest_deg", JointType.CYLINDRICAL: "rest_deg"}
+_TURNING_KINDS = {"hinge_axis", "shaft_axis", "bore_axis", "gear_axis"}
 _SLIDE_FIELD = {JointType.SLIDER: "rest_mm", JointType.CYLINDRICAL: "rest_mm"}
 _DECIMALS = 4  # of mm and degrees in hints: a hundredth of the tolerances
 _AXIS_DECIMALS = 6  # of unit axes in hints: 0.0001°
@@ -155,7 +157,7 @@ class _Mismatch:
 
     def _roll(self, roll: float) -> Finding:
         message = f"The x axes of {self.parent} and {self.child} differ by {abs(roll):.1f}° about z: the part would be turned."
-        hint = f"{_capital(self._set('x'))}{self._rest_instead(roll)}."
+        hint = f"{_capital(self._turning_instead(roll) + self._set('x'))}{self._rest_instead(roll)}."
         return self._finding("E_MATE_ROLL", message, hint, abs(roll), ANGLE_DEG, "deg")
 
     def _rest_instead(self, roll: float) -> str:
@@ -168,6 +170,17 @@ class _Mismatch:
         low, high = (math.degrees(bound[index]) for bound in (self.joint.limits.lower, self.joint.limits.upper))
         turns = [rest + turn for turn in (0.0, -360.0, 360.0) if low - ANGLE_DEG <= rest + turn <= high + ANGLE_DEG]
         return f", or {field} of the joint to {_number(min(max(turns[0], low), high))}" if turns else ""
+
+    def _turning_instead(self, roll: float) -> str:
+        """Return the joint that rests at a roll, for a fixed one between connectors about which parts turn."""
+        ends = ((self.joint.parent, self.joint.parent_connector), (self.joint.child, self.joint.child_connector))
+        kinds = {spec.kind for part, name in ends for spec in self.draft.parts[part].connector_specs if spec.name == name}
+        stated = any(form.name == self.joint.name and not isinstance(form, DerivedJoint) for form in self.draft.plan.joints)
+        if self.joint.type is not JointType.FIXED or kinds.isdisjoint(_TURNING_KINDS) or not stated:
+            return ""
+        where, rest = f"joints.{self.joint.name}", -roll if self.joint.mate is Mate.OPPOSED else roll
+        turning = {f"{where}.type": "revolute", f"{where}.angle_deg": "endless", f"{where}.rest_deg": float(_number(rest))}
+        return f"let it turn: {json.dumps(turning)}, or "
 
     def _offset(self, distance: float) -> Finding:
         wrong = self.actual.translation - self.expected.translation

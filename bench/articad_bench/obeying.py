@@ -328,6 +328,8 @@ RULES = [
     Rule(r"Give degrees within \[-720, 720\]", here([0, 720])),
     Rule(r"Set (rest_\w+) to (\S+),", beside),
     Rule(r", or (\w+) to (\[.*?\])\.", beside),
+    Rule(r", or (rest_\w+) of the joint to (-?[\d.]*\d)", lambda finding, _plan, match: {f"{finding.where}.{match[1]}": float(match[2])}),
+    Rule(r"Let it turn: (\{.*?\})", lambda _finding, _plan, match: json.loads(match[1])),
     Rule(r"widen \w+ to (\[.*?\])", here_json),
     Rule(r"make it a revolute joint", lambda finding, _plan, _match: {f"{above(finding.where)}.type": "revolute", finding.where: None}),
     Rule(r"Use (\w+) instead", moved_key),
