@@ -115,7 +115,7 @@ def dimension_findings(target: ResolvedPart, bbox: FloatArray) -> Iterator[Findi
             "W_SCALE",
             target.name,
             f"Dimension {name!r} of {target.name} is {value:.6g} mm, but the part is only {diagonal:.4g} mm across.",
-            f"Lengths are millimetres: were micrometres given? Then it is {value / 1000.0:.6g}.",
+            f"Lengths are millimetres: were micrometres given? {_then(target, name, value / 1000.0)}",
             dimension=name,
             value=abs(value),
             limit=LONGEST_OF_PART * diagonal,
@@ -131,14 +131,28 @@ def _thickness_findings(target: ResolvedPart, bbox: FloatArray, lengths: Mapping
             continue
         if value > THICKEST * second > 0.0:
             limit, compared = THICKEST * second, f"its second longest side only {second:.4g} mm"
-            hint = f"Lengths are millimetres: were micrometres given? Then it is {value / 1000.0:.6g}."
+            hint = f"Lengths are millimetres: were micrometres given? {_then(target, name, value / 1000.0)}"
         elif 0.0 < value < THINNEST_SHARE * diagonal and target.material.density < LIGHT:
             limit, compared = THINNEST_SHARE * diagonal, f"the part is {diagonal:.4g} mm across, of {target.material.name}"
-            hint = f"Make it at least {limit:.2g} mm, or of sheet metal. Were inches given? Then it is {25.4 * value:.4g}."
+            hint = f"Make it at least {limit:.2g} mm, or of sheet metal. Were inches given? {_then(target, name, 25.4 * value)}"
         else:
             continue
         message = f"Dimension {name!r} of {target.name} is {value:.4g} mm, but {compared}."
         yield _finding("W_SCALE", target.name, message, hint, dimension=name, value=value, limit=limit, unit="mm")
+
+
+def _then(target: ResolvedPart, name: str, value: float) -> str:
+    """Return the advice to correct a dimension, or the parameter that it repeats."""
+    written = target.spec.dimensions[name]
+    if isinstance(written, str) and written.isidentifier():
+        return f"Set parameters.{written} to {value:.6g}, which it follows."
+    return f"Then it is {value:.6g}."
+
+
+def lengths_of(target: ResolvedPart) -> dict[str, float]:
+    """Return the lengths of a part by their addresses in the plan [mm]."""
+    lengths = {name: float(value) for name, value in target.dimensions.items() if not name.endswith(("_deg", "_count"))}
+    return {f"parts.{target.spec.name}.dimensions.{name}": value for name, value in lengths.items()}
 
 
 def read_connectors(brief: Json, entries: object, findings: list[Finding]) -> dict[str, Connector]:

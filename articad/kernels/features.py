@@ -20,6 +20,7 @@ __all__ = ["bore_findings", "feature_findings"]
 NARROW_MM: Final = 0.5  # printers and common drills make no bore narrower than this
 DEEPEST: Final = 10.0  # its depth over its width
 _CLOSED: Final = 0.05  # sum of normals over the area: 0 for a whole cylinder, 0.64 for a half
+_ROUNDING: Final = 0.02  # of a width that is measured on a mesh
 _AXES: Final = frozenset({"bore_axis", "shaft_axis"})
 _NAMES: Final = {"bore_axis": "a bore", "shaft_axis": "a shaft or bore", "mount_face": "a face"}
 
@@ -39,12 +40,13 @@ def feature_findings(part: str, connectors: Mapping[str, Connector], mesh: TriMe
     return Findings(_findings(part, connectors, mesh))
 
 
-def bore_findings(part: str, mesh: TriMesh) -> Findings:
+def bore_findings(part: str, mesh: TriMesh, lengths: Mapping[str, float] | None = None) -> Findings:
     """Return W_BORE_NARROW for a bore that can neither be drilled nor printed: less than half a millimetre wide, and deep.
 
     Args:
         part: Its name.
         mesh: Its surface, in any frame [mm].
+        lengths: Its dimensions by address in the plan [mm].
     """
     found: dict[tuple[float, float], Finding] = {}
     for face in faces_of(mesh):
@@ -57,12 +59,19 @@ def bore_findings(part: str, mesh: TriMesh) -> Findings:
                 where=f"parts.{part}",
                 parts=(part,),
                 message=f"{part} has a bore {width:.3g} mm wide and {depth:.3g} mm deep: it can neither be drilled nor printed.",
-                hint=f"Widen it to at least {NARROW_MM:g} mm, or leave it out. Were inches given? Then it is {25.4 * width:.4g} mm wide.",
+                hint=f"Widen it to at least {NARROW_MM:g} mm, or leave it out. Were inches given? Then it is {25.4 * width:.4g} mm wide."
+                f"{_stated(width, lengths or {})}",
                 value=width,
                 limit=NARROW_MM,
                 unit="mm",
             )
     return Findings(found.values())
+
+
+def _stated(width: float, lengths: Mapping[str, float]) -> str:
+    """Return the advice to change the number that states a width, as a radius or a diameter; empty if none does."""
+    stating = [address for address, value in lengths.items() for times in (1, 2) if abs(times * value - width) < _ROUNDING * width]
+    return f" Set {stating[0]} to {25.4 * lengths[stating[0]]:.6g}, which states it." if stating else ""
 
 
 def _findings(part: str, connectors: Mapping[str, Connector], mesh: TriMesh) -> Iterator[Finding]:

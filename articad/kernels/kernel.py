@@ -19,7 +19,7 @@ from articad.errors import KernelError
 from articad.findings import Finding, Findings
 from articad.geometry.part import Part, Solid
 from articad.kernels.cache import BuildCache
-from articad.kernels.contract import dimension_findings, drift_findings, primary_connector, seating
+from articad.kernels.contract import dimension_findings, drift_findings, lengths_of, primary_connector, seating
 from articad.kernels.features import bore_findings, feature_findings
 from articad.kernels.results import read_mesh
 from articad.plan.brief import brief, brief_digest, build_digest
@@ -202,7 +202,7 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
     known = {(finding.code, finding.where) for finding in built.findings}
     drift = drift_findings(resolved_part, built.brief, built.connectors, built.solid.bbox)
     name = resolved_part.name
-    features = feature_findings(name, resolved_part.connectors, solid.mesh) + bore_findings(name, solid.mesh)
+    features = feature_findings(name, resolved_part.connectors, solid.mesh) + bore_findings(name, solid.mesh, lengths_of(resolved_part))
     found = drift + features + dimension_findings(resolved_part, solid.bbox)
     return part, Findings(finding for finding in found if (finding.code, finding.where) not in known)
 

@@ -184,10 +184,16 @@ def _kept(
     """Return a part that keeps its contract, as built and as seated in the plan, with its warnings."""
     built = build_part(resolved, name, script, kernel=kernel, cache=cache, deflection=deflection)
     part, drift = realise(resolved.parts[name], built)
-    findings = built.findings + drift
+    findings = _without_effects_of_slips(built.findings + drift)
     if not findings.ok:
         raise ContractError("\n".join(map(str, findings.errors)), findings=findings, parts=(name,))
     return built, part, findings
+
+
+def _without_effects_of_slips(findings: Findings) -> Findings:
+    """Return findings without dimensions that have no effect because they are out of proportion, as a cut far longer than its part is."""
+    doubted = {finding.where for finding in findings.of("W_SCALE")}
+    return Findings(finding for finding in findings if finding.code != "W_DIMENSION_UNUSED" or finding.where not in doubted)
 
 
 def derive_part(resolved: ResolvedPlan, name: str, realised: Mapping[str, RealisedPart], *, kernel: PartKernel) -> RealisedPart:

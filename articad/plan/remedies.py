@@ -37,7 +37,7 @@ Changes = Mapping[str, Any]
 _MATES: Final = frozenset({"E_MATE_OFFSET", "E_MATE_FLIP", "E_MATE_TILT", "E_MATE_ROLL"})
 _RANGES: Final = frozenset({"E_LOOP_LIMIT", "E_DEAD_POINT", "E_REST_OUTSIDE_LIMITS"})
 _OF_NUMBERS: Final = _RANGES | {"E_PARAMETER_BOUNDS", "E_ENVELOPE_VALUE"}
-_SOUGHT: Final = _MATES | _OF_NUMBERS | {"E_DISCONNECTED", "E_DOF_MISMATCH"}
+_SOUGHT: Final = _MATES | _OF_NUMBERS | {"E_DISCONNECTED", "E_DOF_MISMATCH", "E_COUPLING_AXES"}
 """Codes of findings for which changes are sought."""
 _TRIALS: Final = 160  # checks of a plan with findings
 _OFFERED: Final = 3  # changes that a hint states
@@ -122,6 +122,7 @@ def _candidates(draft: Draft, whole: Json, findings: Sequence[Finding]) -> Itera
     joints = {joint.name: joint for joint in draft.joints}
     apart = [joints[name] for one in findings if one.code in _MATES and (name := one.where.removeprefix("joints.")) in joints]
     apart = list(dict.fromkeys(apart))
+    coupled = [joints[name] for name in _coupled(whole, findings) if name in joints]
     about = dict.fromkeys(name for one in findings for name in one.parts if name in draft.parts)
     codes = {one.code for one in findings}
     if codes & _RANGES:
@@ -138,12 +139,19 @@ def _candidates(draft: Draft, whole: Json, findings: Sequence[Finding]) -> Itera
     yield from _poses(draft, about, shifts)
     yield from _mates(apart, draft, joints)
     placing = [joints[name] for name in draft.auto_joints if name in joints and {joints[name].parent, joints[name].child} & about.keys()]
-    yield from _connectors(draft, [*apart, *placing], shifts)
+    yield from _connectors(draft, [*apart, *placing, *coupled], shifts)
     sources = {spec.name for name in about if (spec := draft.parts[name].spec) is not None}
     alike = [
         joint for joint in joints.values() if any((spec := draft.parts[part].spec) and spec.name in sources for part, _ in _ends(joint))
     ]
-    yield from _both_ends(draft, [*apart, *placing, *alike], shifts)
+    yield from _both_ends(draft, [*apart, *placing, *coupled, *alike], shifts)
+
+
+def _coupled(whole: Json, findings: Iterable[Finding]) -> list[str]:
+    """Return the joints of couplings whose axes do not suit."""
+    wrong = {one.where for one in findings if one.code == "E_COUPLING_AXES"}
+    couplings = [one for one in whole.get("couplings", ()) if f"couplings.{one['name']}" in wrong]
+    return list(dict.fromkeys(name.split(".")[0] for one in couplings for name in one["joints"]))
 
 
 # ---------------------------------------------------------------- structure

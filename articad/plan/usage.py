@@ -23,6 +23,7 @@ LARGEST_MM = 1e6  # a kilometre
 THINNEST_MM = 0.05  # a smaller dimension of a part is in metres or inches, unless it is a clearance
 LEAST_CLEARANCE_MM, NOISE_MM = 1e-3, 1e-9  # below the second, a number is a rounded zero
 LONGEST_SHARE = 50.0  # the longest dimension of a plan over the next shorter one; among 181 sound plans the greatest is 13
+_FLAT = 0.4  # an extent of connectors over the longest one: a shorter one may be the thickness of their part
 LIGHTEST, HEAVIEST = 10.0, 23000.0  # kg/m³: foam and osmium
 _SUITABLE = {  # a type that is not listed accepts any kind: a pin, a hub or a bracket is fixed on an axis as well as on a face
     JointType.REVOLUTE: ("hinge_axis", "shaft_axis", "bore_axis", "gear_axis"),
@@ -318,14 +319,19 @@ def _dimensions(draft: Draft) -> list[Finding]:
 
 
 def _as_elsewhere(draft: Draft, part: str, name: str, least: float) -> str:
-    """Return the advice to give a dimension the value that most parts with one of this name have, those joined to this part first."""
+    """Return the advice to give a dimension the value of one of this name elsewhere, or the shortest extent of its part's connectors."""
     joined = {end for joint in draft.joints for end in (joint.parent, joint.child) if part in (joint.parent, joint.child)}
     others = {one: abs(held[name]) for one, held in draft.dimensions.items() if one != part and abs(held.get(name, 0.0)) >= least}
-    if not others:
-        return ""
     counts = Counter(others.values())
-    nearest = min(others, key=lambda one: (one not in joined, -counts[others[one]]))
-    return f"or make it {others[nearest]:.6g}, as {name!r} of {nearest} is; "
+    if others:
+        nearest = min(others, key=lambda one: (one not in joined, -counts[others[one]]))
+        return f"or make it {others[nearest]:.6g}, as {name!r} of {nearest} is; "
+    held = draft.parts.get(part)
+    places = np.array([connector.frame.translation for connector in held.connectors.values()] if held else []).reshape(-1, 3)
+    extents = [float(np.ptp([0.0, *column])) for column in places.T]
+    reach = min((extent for extent in extents if least <= extent < _FLAT * max(extents)), default=0.0)
+    axis = "xyz"[extents.index(reach)] if reach else ""
+    return f"or make it {reach:.6g}, as far as the connectors of {part} reach along {axis}; " if reach else ""
 
 
 def _negative(part: str, name: str, value: float) -> Finding:

@@ -299,7 +299,7 @@ RULES = [
     Rule(r"were micrometres given\?$", scaled(0.001)),
     Rule(r"Make it (-?[\d.]+); or name a place", lambda finding, _plan, match: {finding.where: float(match[1])}),
     Rule(r"Then it is (\S+?)[;.](?:\s|$)", lambda finding, _plan, match: {finding.where: float(match[1])}),
-    Rule(r"or make it (\S+), as '\w+' of \w+ is", lambda finding, _plan, match: {finding.where: float(match[1])}),
+    Rule(r"or make it (\S+), as (?:'\w+' of|far as)", lambda finding, _plan, match: {finding.where: float(match[1])}),
     Rule(r"or make it at least (\S+) mm", lambda finding, _plan, match: {finding.where: float(match[1])}),
     Rule(r"set density_kg_m3 to (\S+);", lambda finding, _plan, match: {finding.where: float(match[1])}),
     Rule(r"Did you mean x=(\(.*?\))", here_numbers),
