@@ -21,7 +21,7 @@ from articad.findings import Finding, Findings
 from articad.interference.check import check_scene
 from articad.kernels.slips import UNITS, numbers_of
 from articad.kinematics.joints import Coordinate
-from articad.plan.remedies import Changes, digits, of_couplings, offered, with_other_sign
+from articad.plan.remedies import Changes, digits, of_couplings, offered, turned, with_other_sign
 from articad.plan.resolve import ResolvedPlan
 from articad.render.pictures import motion_frames
 
@@ -97,6 +97,10 @@ def _candidates(asked: Sequence[Finding], assembly: Assembly, resolved: Resolved
     """Yield changes, and whether parts must be built for them: of numbers that shape the parts at fault, then of motions."""
     colliding = [finding for finding in asked if finding.code == "E_MOTION_COLLISION"]
     at_rest = [finding for finding in asked if finding.code != "E_MOTION_COLLISION" and not finding.pose]
+    if at_rest:
+        pairs = [set(finding.parts) for finding in at_rest]
+        between = [joint.name for joint in assembly.joints if {joint.parent, joint.child} in pairs]
+        yield from ((change, False) for change in turned(resolved.plan, between))
     if at_rest or not colliding:
         yield from ((change, True) for change in itertools.islice(_units(at_rest or asked, resolved), _BUILDS))
     if colliding and not at_rest:

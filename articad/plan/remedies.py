@@ -29,7 +29,7 @@ from articad.plan.draft import Draft
 from articad.plan.rest import identity_or
 from articad.plan.schema import AssemblyPlan, PartSpec, Pose
 
-__all__ = ["Changes", "advised", "digits", "of_couplings", "offered", "remedies", "with_other_sign"]
+__all__ = ["Changes", "advised", "digits", "of_couplings", "offered", "remedies", "turned", "with_other_sign"]
 
 Changes = Mapping[str, Any]
 """New values by address, as `articad.plan.amending.amended` takes them."""
@@ -48,10 +48,10 @@ _MOVING: Final = {
     "shaft_axis": "revolute",
     "bore_axis": "revolute",
     "gear_axis": "revolute",
-    "ball_centre": "ball",
 }
 """Types of joints that suit a kind of connector without limits."""
 _LIMITED: Final[Mapping[str, Json]] = {
+    "ball_centre": {"type": "ball", "cone_deg": 20},
     "slide_axis": {"type": "slider", "travel_mm": [0, 100]},
     "thread_axis": {"type": "screw", "lead_mm": 2, "angle_deg": [0, 360]},
 }
@@ -250,7 +250,7 @@ def _further_joints(draft: Draft, free: Sequence[_Free]) -> Iterator[tuple[str, 
         if part != other and _meet(draft, (part, name), (other, at)):
             for form in _forms(kind):
                 joint = {**form, "parent": f"{part}.{name}", "child": f"{other}.{at}"}
-                yield f"joint of {part} and {other}", {f"joints.{other}_on_{part}": joint}
+                yield f"joint of {' and '.join(sorted((part, other)))}", {f"joints.{other}_on_{part}": joint}
 
 
 def _forms(kind: str) -> Iterator[Json]:
@@ -264,14 +264,26 @@ def _forms(kind: str) -> Iterator[Json]:
 
 
 def _meet(draft: Draft, first: tuple[str, str], second: tuple[str, str]) -> bool:
-    """Return whether two connectors have the same place at rest."""
+    """Return whether two connectors have the same place at rest, or may have it because nothing places one of their parts."""
     places = []
     for part, name in (first, second):
         held = draft.parts[part]
-        if held.T is None or name not in held.connectors:
+        if held.T is None:
+            return True
+        if name not in held.connectors:
             return False
         places.append(held.T.apply(held.connectors[name].frame.translation))
     return bool(np.linalg.norm(places[0] - places[1]) < _LEAST_MM)
+
+
+def turned(plan: AssemblyPlan, joints: Iterable[str]) -> Iterator[Changes]:
+    """Yield the other mate of some joints, and their connectors with a reversed axis, exchanged axes, or turned about their axis."""
+    draft = Draft(plan)
+    chosen = [joint for joint in draft.joints if joint.name in set(joints)]
+    yield from (change for _, change in _mates(chosen, draft, {}))
+    owners = [(spec.name, name) for joint in chosen for part, name in _ends(joint) if (spec := draft.parts[part].spec) is not None]
+    for part, name in dict.fromkeys(owners):
+        yield from (change for _, change in _altered(draft, part, name, ()))
 
 
 def _copies(whole: Json, draft: Draft, about: Iterable[str]) -> Iterator[tuple[str, Changes]]:

@@ -101,6 +101,16 @@ def test_a_bore_like_a_needle_cannot_be_made(seed: int) -> None:
     assert codes(0.55, 60) == ()
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_the_dimension_that_states_a_bore_like_a_needle_is_told_in_millimetres(times: int) -> None:
+    """Fault: a bore in inches, stated as a diameter or a radius."""
+    meant = 5.0
+    width = times * meant / 25.4
+    mesh = mesh_of(trimesh.creation.annulus(width / 2, width / 2 + 5, 40, sections=64), place(1))
+    (found,) = bore_findings("part", mesh, {"parts.part.dimensions.length": 40.0, "parts.part.dimensions.hole": meant / 25.4})
+    assert "Set parts.part.dimensions.hole to 5, which states it." in (found.hint or "")
+
+
 def test_a_sharp_inner_fillet_is_no_bore() -> None:
     angle = Box(20, 20, 60) - Pos(5, 5, 0) * Box(20, 20, 60)
     corner = angle.edges().filter_by(Axis.Z).sort_by_distance((-5, -5, 0))[0]

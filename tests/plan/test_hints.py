@@ -6,6 +6,7 @@ The repairer changes plans by address only, as `edit_plan` does: so each finding
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Callable
 from typing import Any
@@ -237,3 +238,36 @@ def test_the_advice_on_a_shared_connector_suits_both_of_its_joints(kind: str, fi
             assert not found.of("W_CONNECTOR_KIND")
         else:
             assert len(found.of("W_CONNECTOR_KIND")) <= max(len(before), 1)
+
+
+RESTING = [(low, high, rest) for low in (-120, -15, 10) for high in (60, 110) for rest in (low, (low + high) / 2, high) if abs(rest) > 7]
+
+
+@pytest.mark.parametrize(("low", "high", "rest"), RESTING)
+@pytest.mark.parametrize("slip", ["radians", "sign"])
+def test_limits_in_radians_or_with_the_wrong_sign_that_miss_the_rest_value_are_told_as_meant(
+    low: int, high: int, rest: float, slip: str
+) -> None:
+    good = pair({"type": "revolute", "angle_deg": [low, high], "rest_deg": rest}, 1)
+    wrong = [round(math.radians(low), 4), round(math.radians(high), 4)] if slip == "radians" else [-high, -low]
+    bad = amended(good, {"joints.j.angle_deg": wrong})
+    outside = [finding for finding in check(bad) if finding.code == "E_REST_OUTSIDE_LIMITS"]
+    if wrong[0] <= rest <= wrong[1]:
+        assert not outside
+        return
+    meant = followed(outside[0], bad)[0]["joints"][0]["angle_deg"]
+    assert meant == pytest.approx([low, high], abs=0.01)
+
+
+@pytest.mark.parametrize("thickness", [3, 8, 18])
+@pytest.mark.parametrize("elsewhere", [True, False])
+def test_a_wall_like_foil_is_told_as_its_like_or_as_thick_as_its_connectors_reach(thickness: int, elsewhere: bool) -> None:
+    plan = pair({"type": "revolute", "angle_deg": [0, 90]}, 1)
+    wall, other = plan["parts"]
+    wall["dimensions"] = {"thickness": 0.01}
+    other["dimensions"] = {"thickness": thickness} if elsewhere else {"length": 70}
+    wall["connectors"].append({**wall["connectors"][0], "name": "far", "o": [70, 0, thickness]})
+    (found,) = [finding for finding in check(plan) if finding.code == "W_SCALE"]
+    offered = [each["parts"][0]["dimensions"]["thickness"] for each in followed(found, plan)]
+    assert thickness in offered
+    assert ("'thickness' of" in (found.hint or "")) == elsewhere

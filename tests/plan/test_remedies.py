@@ -12,6 +12,7 @@ from articad.plan.check import check_plan
 from articad.plan.remedies import advised, remedies
 from articad.plan.schema import AssemblyPlan
 from tests.plan.samples import Json, document, pair
+from tests.plan.test_check import TURNING, gears_with
 
 
 def serious(plan: Json) -> list[Any]:
@@ -92,3 +93,45 @@ def test_a_plan_with_two_mistakes_has_no_single_remedy_and_a_sound_one_needs_non
     assert advised(AssemblyPlan.from_json(bad)) == check_plan(AssemblyPlan.from_json(bad))
     sound = AssemblyPlan.from_json(two_on_a_rail())
     assert advised(sound) == check_plan(sound)
+
+
+@pytest.mark.parametrize("lower", [-40, -15, 0])
+@pytest.mark.parametrize("slip", ["limits", "ratio", "sense"])
+def test_a_range_that_a_coupling_does_not_reach_is_mended_where_it_is_wrong(lower: int, slip: str) -> None:
+    """A wheel turns from `lower` to 60 degrees, the other one half as far the other way."""
+    good = gears_with(lambda _plan: None, type="linear", ratio=-0.5, **TURNING)
+    first, second = (name.split(".")[0] for name in TURNING["joints"])
+    good = amended(good, {f"joints.{first}.angle_deg": [lower, 60], f"joints.{second}.angle_deg": [-31, 21]})
+    slips = {
+        "limits": (f"joints.{second}.angle_deg", [-21, 31]),
+        "ratio": ("couplings.tie.ratio", -1.0),
+        "sense": ("couplings.tie.ratio", 0.5),
+    }
+    address, value = slips[slip]
+    bad = amended(good, {address: value})
+    assert serious(good) == []
+    assert {one.code for one in serious(bad)} == {"E_LOOP_LIMIT"}
+    assert any(serious(amended(bad, change)) == [] and amended(bad, change) == good for change in offered(bad))
+
+
+@pytest.mark.parametrize(
+    ("kind", "type"), [("slide_axis", "slider"), ("thread_axis", "screw"), ("ball_centre", "ball"), ("hinge_axis", "revolute")]
+)
+@pytest.mark.parametrize("slip", ["missing", "fixed"])
+def test_a_joint_that_is_missing_or_fixed_is_offered_as_its_connectors_suggest(kind: str, type: str, slip: str) -> None:  # noqa: A002
+    motions: dict[str, Json] = {"slider": {"travel_mm": [0, 9]}, "screw": {"lead_mm": 3, "angle_deg": [0, 90]}, "ball": {"cone_deg": 9}}
+    good = pair({"type": type, **motions.get(type, {"angle_deg": [0, 90]})}, 3 if type == "ball" else 1)
+    for part in good["parts"]:
+        part["connectors"][0]["kind"] = kind
+    change = (
+        {"joints.j": None}
+        if slip == "missing"
+        else {"joints.j": {k: v for k, v in good["joints"][0].items() if k in ("parent", "child")} | {"type": "fixed"}}
+    )
+    bad = amended(good, change)
+    assert serious(good) == []
+    assert serious(bad)
+    first = amended(bad, offered(bad)[0])
+    assert [joint["type"] for joint in first["joints"]] == [type]
+    told = advised(AssemblyPlan.from_json(bad))[0].hint or ""
+    assert ("The limits of the joint are examples" in told) == (type != "revolute")
