@@ -75,8 +75,15 @@ def offered(changes: Sequence[Changes], findings: int) -> str:
     what = f"all {findings} findings" if findings > 1 else "this finding"
     how = "One change ends" if len(changes) == 1 else "Any of these changes alone ends"
     told = " or ".join(json.dumps(change) for change in changes)
-    examples = any(json.dumps(form)[1:-1].partition(", ")[2] in told for form in _LIMITED.values())
-    return f"{how} {what}: {told}.{' The limits of the joint are examples: give those that are meant.' if examples else ''}"
+    examples = " The limits of the joint are examples: give those that are meant." if any(map(_has_examples, changes)) else ""
+    return f"{how} {what}: {told}.{examples}"
+
+
+def _has_examples(change: Changes) -> bool:
+    """Return whether a change adds a joint of `_LIMITED`, whole or field by field."""
+    (value, *_) = change.values()
+    joint = value if isinstance(value, dict) else {address.rpartition(".")[2]: each for address, each in change.items()}
+    return any(all(joint.get(key) == each for key, each in form.items()) for form in _LIMITED.values())
 
 
 def remedies(plan: AssemblyPlan, findings: Iterable[Finding]) -> list[Changes]:

@@ -264,10 +264,10 @@ def test_limits_in_radians_or_with_the_wrong_sign_that_miss_the_rest_value_are_t
 def test_a_wall_like_foil_is_told_as_its_like_or_as_thick_as_its_connectors_reach(thickness: int, elsewhere: bool) -> None:
     plan = pair({"type": "revolute", "angle_deg": [0, 90]}, 1)
     wall, other = plan["parts"]
-    wall["dimensions"] = {"thickness": 0.01}
-    other["dimensions"] = {"thickness": thickness} if elsewhere else {"length": 70}
+    wall["dimensions"] = {"thickness": 0.01, "width": 70}
+    other["dimensions"] = {"width": 70} | ({"thickness": thickness} if elsewhere else {})
     wall["connectors"].append({**wall["connectors"][0], "name": "far", "o": [70, 0, thickness]})
-    (found,) = [finding for finding in check(plan) if finding.code == "W_SCALE"]
+    (found,) = [finding for finding in check(plan) if finding.where == f"parts.{wall['name']}.dimensions.thickness"]
     offered = [each["parts"][0]["dimensions"]["thickness"] for each in followed(found, plan)]
     assert thickness in offered
     assert ("'thickness' of" in (found.hint or "")) == elsewhere
