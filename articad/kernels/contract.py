@@ -143,7 +143,7 @@ def _thickness_findings(target: ResolvedPart, bbox: FloatArray, lengths: Mapping
 
 def _then(target: ResolvedPart, name: str, value: float) -> str:
     """Return the advice to correct a dimension, or the parameter that it repeats."""
-    written = target.spec.dimensions[name]
+    written = target.spec.dimensions.get(name)
     if isinstance(written, str) and written.isidentifier():
         return f"Set parameters.{written} to {value:.6g}, which it follows."
     return f"Then it is {value:.6g}."
