@@ -24,7 +24,7 @@ def told(assembly: Assembly) -> Finding:
 @pytest.mark.parametrize("name", ["bore", "clearance"])
 def test_a_dimension_in_inches_is_told_in_millimetres(name: str) -> None:
     meant = {"bore": 4.0, "clearance": 0.2}[name]
-    document, made = wheel_on_a_pin(**{name: meant / 25.4})
+    document, made = wheel_on_a_pin(fit=None, **{name: meant / 25.4})
     finding = told(made)
 
     assert finding.route == "design"
