@@ -34,7 +34,7 @@ def _part(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.assembly import DEFLECTION_MM
     from articad.errors import KernelError
     from articad.kernels.choice import kernel_named
-    from articad.kernels.parts import build_source, script_file
+    from articad.kernels.parts import build_source
     from articad.plan.resolve import resolve
     from articad.plan.schema import AssemblyPlan
 
@@ -43,7 +43,7 @@ def _part(options: argparse.Namespace, terminal: Terminal) -> Report:
     names = list(dict.fromkeys(options.names)) or [part.name for part in resolved.parts.values() if part.derivation is None]
     kind = options.kernel or plan.kernel
     folder = Path(options.plan) if Path(options.plan).is_dir() else Path(options.plan).parent
-    scripts = {name: _script(resolved, name, script_file(folder / "parts", name, kind), folder) for name in names}
+    scripts = {name: _script(resolved, name, folder / "parts", kind) for name in names}
     kernel, cache = kernel_named(kind, sandbox=sandbox_level(options)), build_cache(options)
 
     with terminal.progress("Building", total=len(names)) as tell, ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
@@ -73,15 +73,16 @@ def _part(options: argparse.Namespace, terminal: Terminal) -> Report:
     }
 
 
-def _script(resolved: ResolvedPlan, name: str, file: Path, folder: Path) -> bytes:
+def _script(resolved: ResolvedPlan, name: str, folder: Path, kernel: str) -> bytes:
     """Return the script of a part.
 
     Raises:
         ReadError: If there is no such part, it is derived, or the script cannot be read.
     """
     from articad.errors import ReadError, did_you_mean
-    from articad.kernels.parts import read_script
+    from articad.kernels.parts import read_script, script_file, script_of
 
+    file = script_file(folder, name, kernel)
     target = resolved.parts.get(name)
     if target is None:
         message = f"The plan has no part {name!r}.{did_you_mean(name, resolved.parts)} It has {', '.join(resolved.parts)}."
@@ -89,7 +90,8 @@ def _script(resolved: ResolvedPlan, name: str, file: Path, folder: Path) -> byte
     if target.derivation is not None:
         message = f"{name!r} is derived: it needs no script. Build {target.derivation.source!r}, and it follows."
         raise ReadError(message, path=str(file), where=name)
-    return read_script(file, folder)
+    script = script_of(folder, target, kernel)
+    return read_script(file, folder.parent) if script is None else script
 
 
 def _reported(name: str, outcome: RealisedPart | KernelError, terminal: Terminal) -> Report:

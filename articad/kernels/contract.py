@@ -334,11 +334,14 @@ def _unused_finding(part: str, dimension: str, step: str, script: str) -> Findin
 
 
 def _named_in(script: str) -> set[str]:
-    """Return the words within the string literals of a script: there a script names dimensions, also in expressions."""
+    """Return what may name a dimension in a script: words within string literals, also in expressions, attributes, and names that are used."""
     try:
-        texts = [node.value for node in ast.walk(ast.parse(script)) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+        nodes = list(ast.walk(ast.parse(script)))
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set()
+    texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    texts += [node.attr for node in nodes if isinstance(node, ast.Attribute)]
+    texts += [node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
     return {word for text in texts for word in _WORD.findall(text)}
 
 

@@ -3,7 +3,8 @@
 A dimension that is named after a connector makes a feature there: `<connector>_pin`, `_bar_x` and `_bar_y`, `_ball` add material,
 `_bore`, `_slot_x` and `_slot_y`, `_socket` cut it. Sizes are diameters and widths [mm]; a pin or bar is `<connector>_length` long from the
 connector's origin along its z, a bore or slot `<connector>_depth` deep, or through. A fork is cut out over `_gap` along z within `_reach` of the
-axis, and its pin spans it over `_span`, both centred on the connector; a shaft of `_shaft` has a groove of `_width` down to `_groove`.
+axis, and its pin spans it over `_span`, both centred on the connector; a shaft of `_shaft` has a groove of `_width` down to `_groove`. A pin may have a `_head`, `_thick` behind the connector, and a `_tail` behind
+that.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
     """Return a shape with the features of its joints, and the planned connectors: what `build(part)` returns.
 
     Args:
-        shape: build123d's shape, in the part's frame.
+        shape: build123d's shape, in the part's frame; None for a part that is made of features alone, such as a pin.
         part: What the script was given.
     """
     import build123d as cad  # noqa: PLC0415 - a traced run replaces the module
@@ -30,11 +31,11 @@ def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
     sizes = dict(part.dimensions)
     places = {name: cad.Plane(frame.o, x_dir=frame.x, z_dir=frame.z) for name, frame in part.connectors.items()}
     for name, place in places.items():  # first, so that no fork loses its pin
-        if f"{name}_gap" in sizes:
+        if f"{name}_gap" in sizes and shape is not None:
             shape = shape - place * cad.Cylinder(sizes[f"{name}_reach"], sizes[f"{name}_gap"])
     for name, place in places.items():
         for body in _inner(cad, sizes, name):
-            shape = shape + place * body
+            shape = place * body if shape is None else shape + place * body
     for name, place in places.items():  # last, so that no pin fills a bore
         for cutter in _outer(cad, sizes, name):
             shape = shape - place * cutter
@@ -60,6 +61,11 @@ def _inner(cad: Any, sizes: Any, name: str) -> Iterator[Any]:
         yield cad.Cylinder(sizes[f"{name}_pin"] / 2, sizes[f"{name}_span"])
         sizes = {key: value for key, value in sizes.items() if key != f"{name}_pin"}
     yield from _bodies(cad, sizes, name, _INNER)
+    thick = sizes.get(f"{name}_thick", 0)
+    if f"{name}_head" in sizes:
+        yield cad.Cylinder(sizes[f"{name}_head"] / 2, thick, align=_high(cad))
+    if f"{name}_tail" in sizes:
+        yield cad.Pos(0, 0, -thick) * cad.Cylinder(sizes[f"{name}_pin"] / 2, sizes[f"{name}_tail"], align=_high(cad))
 
 
 def _outer(cad: Any, sizes: Any, name: str) -> Iterator[Any]:
@@ -89,6 +95,10 @@ def _rod(cad: Any, diameter: Any, length: Any) -> Any:
 
 def _bar(cad: Any, x: Any, y: Any, length: Any) -> Any:
     return cad.Box(x, y, 2 * THROUGH) if length is None else cad.Box(x, y, length, align=_low(cad))
+
+
+def _high(cad: Any) -> Any:
+    return (cad.Align.CENTER, cad.Align.CENTER, cad.Align.MAX)
 
 
 def _low(cad: Any) -> Any:

@@ -9,7 +9,7 @@ import copy
 import signal
 import traceback
 from collections.abc import Callable, Iterator, Mapping
-from types import FrameType, SimpleNamespace
+from types import FrameType, FunctionType, SimpleNamespace
 from typing import Any
 
 from build123d import Shape
@@ -18,6 +18,7 @@ from OCP.BRepCheck import BRepCheck_Analyzer
 from articad.kernels import measure
 from articad.kernels.made import made
 from articad.kernels.tessellation import Same
+from articad.plan.signatures import names_for
 
 FILE = "part.py"  # the file name of a script's code: tracebacks are cut down to it
 PARTIAL_SOLIDS = 32  # solids of a failed script that are kept
@@ -103,11 +104,8 @@ def _innermost(error: BaseException) -> FrameType:
 
 
 def built(namespace: Json, part: Json) -> tuple[Any, dict[str, Json]]:
-    """Call `build(part)` and return the kernel's shape and plain connectors."""
-    build = namespace.get("build")
-    if not callable(build):
-        raise NotAPart("The script defines no function build(part)")
-    result = build(as_object(part))
+    """Call the function that builds a part, and return the kernel's shape and plain connectors."""
+    result = called(namespace, as_object(part))
     if not (isinstance(result, (tuple, list)) and len(result) == 2):
         raise NotAPart(f"The function build(part) returned {_kind(result)}, not (shape, connectors)")
     problems: list[str] = []
@@ -116,6 +114,28 @@ def built(namespace: Json, part: Json) -> tuple[Any, dict[str, Json]]:
     if problems:
         raise NotAPart(*problems, shape=shape)
     return shape, connectors
+
+
+def called(namespace: Json, part: SimpleNamespace) -> Any:
+    """Call `build(part)`, or the function with the part's name, whose arguments are its dimensions; return what it returns.
+
+    A function with the part's name may return the shape alone: the features of the part's joints are added to it.
+    """
+    build = namespace.get("build")
+    if callable(build):
+        return build(part)
+    named = (namespace.get(name) for name in names_for(part.name))
+    function = next((one for one in named if isinstance(one, FunctionType) and one.__module__ == namespace["__name__"]), None)
+    if function is None:
+        raise NotAPart(f"The script defines no function build(part), and none called {' or '.join(names_for(part.name))}")
+    given: Json = {"part": part, **part.dimensions}
+    code = function.__code__
+    names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
+    required = names[: code.co_argcount - len(function.__defaults__ or ())]
+    if missing := [name for name in required if name not in given]:
+        raise NotAPart(f"The function {function.__name__} takes {', '.join(missing)}, which the part has no dimension for")
+    returned = function(**{name: given[name] for name in names if name in given})
+    return returned if isinstance(returned, tuple) else made(returned, part)
 
 
 def as_object(part: Json) -> SimpleNamespace:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 from articad.aliases import Progress
 from articad.errors import BuildError, ContractError, KernelError, ReadError, did_you_mean
@@ -19,9 +20,13 @@ from articad.geometry.part import Part
 from articad.kernels.kernel import BuildCache, BuiltPart, PartKernel, build_part, mirror_part, realise
 from articad.kernels.slips import explained
 from articad.plan.brief import brief_digest, build_digest
-from articad.plan.resolve import ResolvedPlan
+from articad.plan.resolve import ResolvedPart, ResolvedPlan
+from articad.plan.signatures import functions_in, names_for
+from articad.plan.standard_joints import is_pin
 
 SCRIPT_SUFFIX = {"build123d": ".py", "freecad": ".freecad.py"}
+PIN_SCRIPT: Final = b"def build(part):\n    return part.made(None)\n"
+"""Draws a part that consists of the features of its joints."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,23 @@ def script_file(folder: Path, name: str, kernel: str) -> Path:
     return common if not _is_there(own) and _is_there(common) else own
 
 
+def script_of(folder: Path, part: ResolvedPart, kernel: str) -> bytes | None:
+    """Return the script of a part; for a pin that a joint makes and no script draws, one that returns the pin; None if there is none.
+
+    Raises:
+        ReadError: If its file cannot be read.
+    """
+    path = script_file(folder, part.name, kernel)
+    script = read_script(path, folder.parent) if _is_there(path) else None
+    if kernel != "build123d" or not is_pin(part.dimensions):
+        return script
+    if script is None or (
+        path.parent != folder and (held := functions_in(script)) and not any(name in held for name in names_for(part.name))
+    ):
+        return PIN_SCRIPT
+    return script
+
+
 def _is_there(path: Path) -> bool:
     return path.is_symlink() or path.exists()
 
@@ -75,11 +97,11 @@ def find_scripts(folder: Path, resolved: ResolvedPlan, kernel: str) -> dict[str,
     for name, part in resolved.parts.items():
         if part.derivation is not None:
             continue
-        path = script_file(folder, name, kernel)
-        if _is_there(path):
-            scripts[name] = read_script(path, folder.parent)
+        script = script_of(folder, part, kernel)
+        if script is not None:
+            scripts[name] = script
         else:
-            missing.append(_script_missing(name, path, present))
+            missing.append(_script_missing(name, script_file(folder, name, kernel), present))
     if missing:
         raise ContractError("\n".join(map(str, missing)), findings=missing)
     return scripts

@@ -17,7 +17,7 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
 from articad.kernels import measure
-from articad.kernels.part_script import FILE, as_object, built, described, plain_connectors
+from articad.kernels.part_script import FILE, as_object, built, called, described, plain_connectors
 from articad.kernels.traced_numbers import Formula, formula_of, operands_first, plain, traced, traced_builtins, traced_math
 from articad.kernels.traced_shapes import Frame, NotRecordedError, TracedOperation, recorded_build123d, solid_node
 
@@ -78,7 +78,7 @@ def _recorded(script: str, part: Json) -> Json:
         namespace: Json = {"__name__": "part", "__builtins__": traced_builtins()}
         exec(compile(script, FILE, "exec"), namespace)  # noqa: S102 - this is what the sandbox is for
         dimensions = {name: traced(name, value) for name, value in part["dimensions"].items()}
-        shape, connectors = namespace["build"](as_object({**part, "dimensions": dimensions}))
+        shape, connectors = called(namespace, as_object({**part, "dimensions": dimensions}))
         solid = solid_node(shape)
         writer = _Rows()
         writer.add(solid.node, solid.frame)

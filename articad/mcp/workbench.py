@@ -19,7 +19,9 @@ from articad.errors import ReadError
 from articad.files import RECORD_BYTES, ROOT_VARIABLE, is_file, read_file
 from articad.plan.amending import amended
 from articad.plan.reading import MOST_LEVELS, is_nested_deeper
-from articad.plan.short import expanded, is_short
+from articad.plan.short import expanded, is_short, scripted
+from articad.plan.short_texts import opened
+from articad.plan.signatures import COMMON, functions_beside
 from articad.processes import launcher, scratch
 from articad.runs.run import write_atomically
 from articad.texts import SPOILED, spoiled
@@ -136,7 +138,8 @@ class Workbench:
         return document
 
     def _expanded(self, name: str, document: dict[str, Any]) -> dict[str, Any]:
-        plan: dict[str, Any] = expanded(document)
+        functions = functions_beside(self.design(name) / "plan.json", scripted(document)) if is_short(document) else None
+        plan: dict[str, Any] = expanded(document, functions)
         for key in ("parameters", "parts", "joints"):
             rows = plan.get(key, [])
             if not isinstance(rows, list) or not all(isinstance(row, dict) and isinstance(row.get("name"), str) for row in rows):
@@ -151,11 +154,19 @@ class Workbench:
         """
         plan = self.document(name)
         try:
-            return self.write_plan(name, amended(plan, changes))
+            return self.write_plan(name, amended(opened(plan, changes) if is_short(plan) else plan, changes))
         except ReadError:
             if not is_short(plan):
                 raise
         return self.write_plan(name, amended(self._expanded(name, plan), changes))  # at an address that only the long form has
+
+    def write_common_script(self, design: str, script: str) -> Path:
+        """Save the script of all parts of a design that have none of their own.
+
+        Raises:
+            ReadError: If it is too large, or the design has a link in its place.
+        """
+        return self._write_script(self.design(design) / COMMON, script)
 
     def write_script(self, design: str, part: str, script: str, kernel: str) -> Path:
         """Save a part's script.
@@ -163,12 +174,16 @@ class Workbench:
         Raises:
             ReadError: If it is too large, or the part's name is not valid.
         """
+        return self._write_script(
+            self.design(design) / "parts" / f"{self.part(part)}{'.freecad.py' if kernel == 'freecad' else '.py'}", script
+        )
+
+    def _write_script(self, file: Path, script: str) -> Path:
         content = script.encode()
         if len(content) > SCRIPT_BYTES:
-            raise ReadError.at(part, f"The script has {len(content)} bytes; at most {SCRIPT_BYTES} are accepted.", "Write it shorter.")
-        file = self.design(design) / "parts" / f"{self.part(part)}{'.freecad.py' if kernel == 'freecad' else '.py'}"
+            raise ReadError.at(file.name, f"The script has {len(content)} bytes; at most {SCRIPT_BYTES} are accepted.", "Write it shorter.")
         if file.parent.is_symlink() or file.is_symlink():
-            raise ReadError.at(part, f"{file} is a link, or lies in a linked folder.", "Remove the link.")
+            raise ReadError.at(file.name, f"{file} is a link, or lies in a linked folder.", "Remove the link.")
         write_atomically(file, content)
         return file
 

@@ -21,7 +21,8 @@ from articad.findings import Finding, Findings
 from articad.plan import reading
 from articad.plan.check import check_plan
 from articad.plan.schema import PLAN_FILE, AssemblyPlan
-from articad.plan.short import expanded
+from articad.plan.short import expanded, is_short, scripted
+from articad.plan.signatures import functions_beside
 
 __all__ = ["further_findings"]
 
@@ -57,7 +58,7 @@ def further_findings(path: Path, found: Findings) -> Findings:
         return found
     if not isinstance(document, dict):
         return found
-    mended = _Mended(expanded(document))
+    mended = _Mended(expanded(document, functions_beside(file, scripted(document)) if is_short(document) else None))
     plan = mended.plan()
     if plan is None:
         return found

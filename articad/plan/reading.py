@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import UnionType
@@ -16,7 +18,8 @@ from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.plan.fields import NAME_RULE, PlanObject, is_name
 from articad.plan.joint_forms import JOINT_TYPES, JointForm
-from articad.plan.short import expanded, is_short, joints_with_a_place
+from articad.plan.short import expanded, is_short, joints_with_a_place, scripted
+from articad.plan.signatures import Functions, functions_beside
 from articad.texts import escaped
 
 F = TypeVar("F", bound=PlanObject)
@@ -57,11 +60,16 @@ def load(form: type[F], path: Path, default_name: str) -> F:
         text = read_file(file, PLAN_BYTES, root=path if path.is_dir() else None)
     except OSError as error:
         raise ReadError(f"{file} cannot be read: {error.strerror}.", path=str(file)) from None
-    return loads(form, text)
+    return loads(form, text, file)
 
 
-def loads(form: type[F], text: str | bytes) -> F:
+def loads(form: type[F], text: str | bytes, file: Path | None = None) -> F:
     """Read a form from JSON text.
+
+    Args:
+        form: The form.
+        text: The text.
+        file: Where it was read; part scripts beside it may state dimensions of a plan in the short form.
 
     Raises:
         PlanError: With all findings.
@@ -81,7 +89,7 @@ def loads(form: type[F], text: str | bytes) -> F:
         problem = f"This plan is nested deeper than {MOST_LEVELS} levels."
         raise _refused([_finding("E_SCHEMA", "plan", problem, "Give one JSON object in UTF-8.")])
     if not repeated:
-        return from_json(form, document)
+        return from_json(form, document, functions_beside(file, scripted(document)) if file and is_short(document) else None)
     twice = [_finding("E_SCHEMA", "plan", f"The key {key!r} occurs twice in one object.", "Remove one of them.") for key in repeated]
     try:
         from_json(form, document)
@@ -102,8 +110,13 @@ def is_nested_deeper(value: Any, most: int) -> bool:
     return True
 
 
-def from_json(form: type[F], document: Any) -> F:
+def from_json(form: type[F], document: Any, functions: Functions | None = None) -> F:
     """Return the form made from a JSON document in memory.
+
+    Args:
+        form: The form.
+        document: The document.
+        functions: The functions that build the parts of a plan in the short form.
 
     Raises:
         PlanError: With all findings.
@@ -112,7 +125,7 @@ def from_json(form: type[F], document: Any) -> F:
         raise _refused([_finding("E_SCHEMA", "plan", f"A plan is an object {{…}}, not {_shown(document)}.", "Give one JSON object.")])
     places = joints_with_a_place(document)
     short = is_short(document)
-    document = expanded(document)
+    document = expanded(document, functions)
     try:
         return form.model_validate(document)
     except ValidationError as error:
@@ -150,7 +163,23 @@ def _with_places(found: list[Finding], document: Any, places: Sequence[str]) -> 
         )
         for name, at in lost.items()
     ]
-    return [one for one in found if one.code != "E_SCHEMA" or one.where not in about] + told
+    return [_for_a_text(one) for one in found if one.code != "E_SCHEMA" or one.where not in about] + told
+
+
+_TEXTS: Final = (
+    (
+        re.compile(r"parts\.\w+\.dimensions"),
+        'Give "width, low = -t; material oak; at 0,0,10": dimensions first, then clauses material, at, turn, like, envelope, color.',
+    ),
+    (re.compile(r"parameters"), 'Give "width = 400, low = -width / 2", or an object by name.'),
+)
+"""Hints for texts of the short form that cannot be read, by their addresses."""
+
+
+def _for_a_text(one: Finding) -> Finding:
+    """Return a finding with a hint about the short form, if it is about a text there."""
+    hint = next((hint for address, hint in _TEXTS if one.code == "E_SCHEMA" and address.fullmatch(one.where)), None)
+    return one if hint is None or " cannot be " not in one.message else dataclasses.replace(one, hint=hint)
 
 
 def _unique_keys(pairs: list[tuple[str, Any]], repeated: dict[str, None]) -> dict[str, Any]:

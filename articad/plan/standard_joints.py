@@ -5,6 +5,7 @@ A script adds them with `part.made(shape)`; the checks measure them as they meas
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -72,10 +73,38 @@ def made_of(joint: Json) -> dict[str, dict[str, Any]]:
     return {inner: pin, outer: hole}
 
 
+def pin_of(joint: Json, name: str) -> tuple[Json, dict[str, Any]]:
+    """Let a hinge turn on a pin that is a part of its own, in place; return the joint that fixes the pin, and what the pin adds to its shank.
+
+    The joint stands where the shank leaves the head, its +z along the shank of `length_mm`. `head_mm` [diameter, thickness] lies behind it, and
+    `tail_mm` of shank behind the head. The pin is pressed into the parent; the child turns on it.
+
+    Args:
+        joint: A hinge.
+        name: The pin's name, and that of the joint that fixes it.
+    """
+    del joint["by"]
+    joint.pop("pin_on", None)
+    head, tail = joint.pop("head_mm", None), joint.pop("tail_mm", None)
+    press = {"name": name, "type": "dowel", "parent": joint.get("parent"), "child": name, "pin_on": "child", "length_mm": 0}
+    press |= {key: copy.deepcopy(joint[key]) for key in ("pin_mm", "at") if key in joint}
+    joint["parent"] = name
+    sizes = {} if head is None else dict(zip(("head", "thick"), head if isinstance(head, list) else [head], strict=False))
+    sizes |= {} if tail is None else {"tail": tail}
+    return press, {f"{joint['name']}_{key}": size for key, size in sizes.items()}
+
+
+def is_pin(dimensions: Mapping[str, Any]) -> bool:
+    """Return whether the dimensions of a part are those of one pin, and nothing else."""
+    found = {name.rpartition("_")[::2] for name in dimensions}
+    sizes = {size for _, size in found}
+    return len({joint for joint, _ in found}) == 1 and {"pin", "length"} <= sizes <= {"pin", "length", "head", "thick", "tail"}
+
+
 def _wider(size: Any, clearance: Any) -> Any:
     if isinstance(size, int | float) and isinstance(clearance, int | float):
         return round(size + 2 * clearance, 9)
     return f"({size})+2*({clearance})" if clearance else size
 
 
-__all__ = ["CLEARANCE_MM", "STANDARD", "made_of"]
+__all__ = ["CLEARANCE_MM", "STANDARD", "is_pin", "made_of", "pin_of"]

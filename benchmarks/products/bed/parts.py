@@ -1,54 +1,43 @@
-from build123d import Align, Axis, Box, Cylinder, Pos, Rot, fillet
+from build123d import *
 
 C, LOW, TOP = Align.CENTER, Align.MIN, Align.MAX
 
 
-def frame(d):
-    body = Pos(0, d.head, d.thick / 2) * Box(d.wide, d.long, d.thick, align=(C, TOP, TOP))
-    for side in (-1, 1):
-        lug = Box(d.lug_wide, d.lug, d.lug / 2 - d.lw, align=(C, C, TOP))
-        body += Pos(side * (d.lug_x + d.lug_wide / 2), -d.lu) * lug
-    return body - Pos(d.wide / 2) * Rot(Y=90) * Cylinder(d.fold_bore / 2, 2 * (d.fold_depth - 2))
+def across(radius, length, x=0):
+    return Pos(x) * Rot(Y=90) * Cylinder(radius, length)
 
 
-def cylinder(d):
-    body = Rot(Y=90) * Cylinder(d.eye, d.thick) + Rot(X=90) * Cylinder(d.radius, d.long, align=(C, C, LOW))
-    body -= Pos(0, -d.start) * Rot(X=90) * Cylinder(d.bore, d.long, align=(C, C, LOW))
-    for side in (-1, 1):
-        body -= Pos(side * (d.thick / 2 + d.eye)) * Rot(Y=90) * Cylinder(d.eye, 2 * d.eye)
+def cabinet(inner, board=20, depth=350, high=2300, back=10):
+    body = Box(inner + 2 * board, depth, high, align=(C, TOP, LOW))
+    return body - Pos(0, -back, board) * Box(inner, depth, high - 2 * board, align=(C, TOP, LOW))
+
+
+def frame(wide, thick, head, lx, lu, lw, gap, fold_bore, fold_depth, long=2000, lug=30):
+    body = Pos(0, head) * Box(wide, long, thick, align=(C, TOP, C))
+    for x in (-lx - 25 - gap, lx + 25 + gap):
+        body += Pos(x, -lu) * Box(20, lug, lug / 2 - lw, align=(C, C, TOP))
+    return body - across(fold_bore / 2, 2 * fold_depth - 4, wide / 2)
+
+
+def mattress(wide=860, long=1900, thick=120):
+    body = Box(wide, long, thick, align=(C, TOP, LOW))
+    return fillet(body.edges().filter_by(Axis.Z), wide / 20)
+
+
+def cylinder(radius=11, long=300, start=30, bore=4.7, eye=13, thick=10):
+    body = across(eye, thick) + Rot(X=90) * Cylinder(radius, long, align=(C, C, LOW))
+    body -= Pos(0, -start) * Rot(X=90) * Cylinder(bore, long, align=(C, C, LOW))
+    for x in (-thick / 2 - eye, thick / 2 + eye):
+        body -= across(eye, 2 * eye, x)
     return body
 
 
-def leg(d):
-    body = Pos(Z=-d.long + d.bar) * Box(2 * d.x, d.thick, d.bar, align=(C, C, TOP))
-    for side in (-1, 1):
-        body += Pos(side * d.x) * (Box(d.wide, d.thick, d.long, align=(C, C, TOP)) + Rot(Y=90) * Cylinder(d.eye, d.wide))
+def rod(radius=4.5, long=340, eye=13, thick=10):
+    return across(eye, thick) + Rot(X=-90) * Cylinder(radius, long, align=(C, C, LOW))
+
+
+def leg(lx, pz, lw, wide=30, thick=20, eye=13, bar=30):
+    body = Pos(Z=bar - pz - lw) * Box(2 * lx, thick, bar, align=(C, C, TOP))
+    for x in (-lx, lx):
+        body += Pos(x) * Box(wide, thick, pz + lw, align=(C, C, TOP)) + across(eye, wide, x)
     return body
-
-
-def disc(d, side):
-    return Pos(side * d.thick / 2) * Rot(Y=90) * Cylinder(d.radius, d.thick)
-
-
-def build(part):
-    d = part.dimensions
-    match part.name:
-        case "cabinet":
-            shape = Box(d.inner + 2 * d.board, d.depth, d.high, align=(C, TOP, LOW))
-            shape -= Pos(0, -d.back, d.board) * Box(d.inner, d.depth, d.high - 2 * d.board, align=(C, TOP, LOW))
-        case "frame":
-            shape = frame(d)
-        case "mattress":
-            body = Box(d.wide, d.long, d.thick, align=(C, TOP, LOW))
-            shape = fillet(body.edges().filter_by(Axis.Z), 0.05 * d.wide)
-        case "cylinder_l":
-            shape = cylinder(d)
-        case "rod_l":
-            shape = Rot(Y=90) * Cylinder(d.eye, d.thick) + Rot(X=-90) * Cylinder(d.radius, d.long, align=(C, C, LOW))
-        case "leg":
-            shape = leg(d)
-        case "side_pin_l" | "leg_pin_l":
-            shape = disc(d, -1)
-        case _:
-            shape = disc(d, 1)
-    return part.made(shape)

@@ -1,41 +1,45 @@
-from build123d import Align, Box, Circle, Cylinder, Plane, Pos, Rot, SlotCenterToCenter, Sphere, extrude, make_hull
+from build123d import *
 
-TOP = (Align.CENTER, Align.CENTER, Align.MAX)
-
-
-def bar(d, *ends):
-    edges = [edge for x, z in ends for edge in (Pos(x, z) * Circle(d.eye)).edges()]
-    return extrude(Plane.XZ * make_hull(edges), d.t / 2, both=True)
+C = Align.CENTER
+LOW, TOP = (C, C, Align.MIN), (C, C, Align.MAX)
 
 
-def shade(d):
-    cup = Pos(Z=-d.drop) * (Cylinder(d.radius, d.high, align=TOP) - Pos(Z=-d.top) * Cylinder(d.radius - d.wall, d.high, align=TOP))
+def hull(t, eye, *ends):
+    edges = [edge for x, z in ends for edge in (Pos(x, z) * Circle(eye)).edges()]
+    return extrude(Plane.XZ * make_hull(edges), t / 2, both=True)
+
+
+def foot(radius=90, thick=20):
+    return Cylinder(radius, thick, align=LOW)
+
+
+def turntable(p, t, h, gap, radius=40, disc=25):
+    return Pos(Z=gap) * (Cylinder(radius, disc, align=LOW) + Box(p + 28, t, h - 6, align=LOW))
+
+
+def lower(long, bar, gap, wide=14):
+    return Pos(0, -gap, long / 2) * extrude(Plane.XZ * SlotCenterToCenter(long, wide, rotation=90), bar)
+
+
+def upper(long, bar, gap, wide=14):
+    return Pos(long / 2, gap + bar) * extrude(Plane.XZ * SlotCenterToCenter(long, wide), bar)
+
+
+def elbow(p, t, ez, eye=12):
+    return hull(t, eye, (-p / 2, 0), (p / 2, 0), (0, ez), (0, ez + p))
+
+
+def head(p, t, out, down, eye=10):
+    return hull(t, eye, (0, 0), (0, p)) + hull(t, eye, (0, 0), (out, -down))
+
+
+def shade(t, gap, radius=60, wall=3, high=100, top=4, drop=14, ear=20, ear_thick=6):
+    cup = Pos(Z=-drop) * (Cylinder(radius, high, align=TOP) - Pos(Z=-top) * Cylinder(radius - wall, high, align=TOP))
     for side in (-1, 1):
-        y = side * (d.t + d.ear_thick) / 2
-        cup += Pos(0, y, -(d.drop + 1) / 2) * Box(d.ear, d.ear_thick, d.drop + 1)
-        cup += Pos(0, y) * Rot(X=90) * Cylinder(d.ear / 2, d.ear_thick)
+        y = side * (t / 2 + gap + ear_thick / 2)
+        cup += Pos(0, y) * (Box(ear, ear_thick, drop + 1, align=TOP) + Rot(X=90) * Cylinder(ear / 2, ear_thick))
     return cup
 
 
-def build(part):
-    d = part.dimensions
-    match part.name:
-        case "foot":
-            shape = Pos(Z=d.thick / 2) * Cylinder(d.radius, d.thick)
-        case "turntable":
-            shape = Pos(Z=d.disc / 2) * Cylinder(d.radius, d.disc) + Pos(Z=d.high / 2) * Box(d.wide, d.t, d.high)
-        case "lower_a":
-            shape = Pos(0, d.thick, d.long / 2) * extrude(Plane.XZ * SlotCenterToCenter(d.long, d.wide, rotation=90), d.thick)
-        case "upper_a":
-            shape = Pos(d.long / 2) * extrude(Plane.XZ * SlotCenterToCenter(d.long, d.wide), d.thick)
-        case "elbow":
-            shape = bar(d, (0, 0), (d.p, 0), (d.p / 2, d.ez), (d.p / 2, d.ez + d.p))
-        case "head":
-            shape = bar(d, (0, 0), (0, d.p)) + bar(d, (0, 0), (d.out, -d.down))
-        case "shade":
-            shape = shade(d)
-        case "bulb":
-            shape = Pos(Z=-d.neck_long / 2) * Cylinder(d.neck, d.neck_long) + Pos(Z=-d.neck_long - 0.8 * d.ball) * Sphere(d.ball)
-        case _:
-            shape = Pos(Y=d.thick / 2) * Rot(X=90) * Cylinder(d.radius, d.thick)
-    return part.made(shape)
+def bulb(neck=12, neck_long=30, ball=22):
+    return Cylinder(neck, neck_long, align=TOP) + Pos(Z=-neck_long - 0.8 * ball) * Sphere(ball)
