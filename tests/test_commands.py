@@ -17,6 +17,7 @@ import pytest
 
 from articad import cli, examples
 from articad.commands import models
+from articad.commands.options import FORMATS
 from articad.kernels.choice import kernel_named
 from articad.runs.run import Run
 from tests.agents import stories
@@ -146,6 +147,30 @@ def test_build_prints_parts_what_is_proven_and_what_to_open(chest: Path, tmp_pat
         "Open: articad show",
     ):
         assert words in told
+
+
+def test_a_complete_build_certifies_and_writes_every_format_in_few_lines(
+    chest: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["build", str(chest), "--out", str(tmp_path / "run"), "--complete"]) == 0
+    printed = capfd.readouterr()
+    lines = [line for line in (printed.out + printed.err).splitlines() if line]
+    assert len(lines) <= 15, lines
+    run = Run.open(tmp_path / "run")
+    exports = run.exports()
+    assert set(exports) == set(FORMATS)
+    told = next(line for line in lines if line.startswith("Files in "))
+    assert all(str(Path(export["main"]).relative_to(run.path)) in told for export in exports.values())
+    assert any(line.startswith("Motion certified") for line in lines)
+    assert any(line.endswith("accepted by its checker.") for line in lines)
+    assert not (tmp_path / "run" / "report.html").exists()
+
+
+def test_a_complete_build_that_overlaps_at_rest_stops_there(chest: Path, tmp_path: Path, report: Any) -> None:
+    (chest / "parts" / "lid.py").write_text(LID.replace("2.5)", "-2.5)"))
+    code, built = report("build", chest, "--out", tmp_path / "run", "--complete")
+    assert (code, built["ok"], built["exports"], "certificate" in built, "verification" in built) == (1, False, {}, False, False)
+    assert "E_STATIC_OVERLAP" in {finding["code"] for finding in built["checks"]["findings"]}
 
 
 def test_set_moves_the_whole_assembly(chest: Path, tmp_path: Path, report: Any) -> None:

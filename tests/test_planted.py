@@ -31,6 +31,7 @@ new product
 new lamp --example desk_lamp
 check product
 part product tray
+build product --out complete --complete
 build product --out run --verify sampled --export urdf,mjcf
 check run --motion --joints --support
 certify run --budget 1

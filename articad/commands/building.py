@@ -7,20 +7,41 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from articad.commands.command import argument, command
-from articad.commands.options import BUILD_ARGUMENTS, SANDBOX
+from articad.commands.options import BUILD_ARGUMENTS, FORMATS, SANDBOX
 from articad.commands.steps import assembled, loaded, reported, stage
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
+    from articad.runs.run import Run
 
 
-@command("build", "Build a plan's parts, assemble, check and export them.", argument("plan", metavar="PLAN_DIR"), *BUILD_ARGUMENTS)
+@command(
+    "build",
+    "Build a plan's parts, assemble, check and export them.",
+    argument("plan", metavar="PLAN_DIR"),
+    argument(
+        "--complete",
+        action="store_true",
+        help="certify the motion, have the proof checked and write every format, unless a check at rest fails; draw nothing, and print at most 15 lines",
+    ),
+    *BUILD_ARGUMENTS,
+)
 def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands.steps import build_cache, draw, plan_in
-    from articad.runs.record import record_assembly, record_certificate, record_checks, record_export, record_objections, record_page
+    from articad.commands.summaries import print_complete
+    from articad.runs.record import (
+        record_assembly,
+        record_certificate,
+        record_checks,
+        record_export,
+        record_objections,
+        record_page,
+        run_report,
+    )
     from articad.runs.run import RunRequest, open_or_create, require_place
     from articad.simulation.standing import STANDING, stands
 
+    terminal.logs = terminal.verbose or not options.complete
     plan = plan_in(options.plan)
     folder = Path(options.plan)
     scripts = (folder if folder.is_dir() else folder.parent) / "parts"
@@ -29,6 +50,7 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     require_place(request, options.out)
     cache = build_cache(options)
     assembly = assembled(plan, scripts, options, terminal, cache=cache)
+    pictures = options.pictures and not options.complete
     with open_or_create(request, options.out) as run:
         with terminal.progress("Finishing") as tell:
             run.save_plan(plan.dumps(), 0)
@@ -36,23 +58,40 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
             with stage(tell, "checks of rest and motion" if options.verify == "sampled" else "checks at rest"):
                 checks = assembly.check(motion=options.verify == "sampled")
             record_checks(run, checks)
-            if options.verify == "certified":
+            stops = options.complete and not checks.ok
+            if (options.verify == "certified" or options.complete) and not stops:
                 with stage(tell, "proof of motion"):
                     record_certificate(run, assembly.certify())
-            for name in options.formats:
+            formats = () if stops else FORMATS if options.complete else options.formats
+            for name in formats:
                 with stage(tell, f"export {name}"):
                     record_export(run, assembly, name)
-            for name in [name for name in options.formats if name in STANDING and checks.ok]:
+            for name in [name for name in formats if name in STANDING and checks.ok]:
                 with stage(tell, f"simulation of {name} at rest"):
                     record_objections(run, name, stands(assembly, Path(run.exports()[name]["main"])))
-            if options.pictures:
+            if pictures:
                 with stage(tell, "page"):
                     record_page(run, assembly)
+        if options.complete:
+            report = run_report(run)
+            if not stops:
+                report |= _verified(run, report, terminal)
+            print_complete(report, terminal)
+            return report
         report = reported(run, terminal)
-        if options.pictures:
+        if pictures:
             terminal.out.flush()  # the results can be read while pictures are drawn
             draw(run, assembly, options, terminal, cache)
     return report
+
+
+def _verified(run: Run, report: Report, terminal: Terminal) -> Report:
+    """Have the independent checker read the certificate of a run; return what it adds to the report of the run."""
+    from articad.certificates.verifier import verify_file
+
+    with terminal.progress("Checking the proof"):
+        faults = verify_file(run.path / "certificate.json", run.path / "certificate")
+    return {"ok": report["ok"] and not faults, "verification": {"ok": not faults, "faults": faults}}
 
 
 @command(

@@ -26,6 +26,7 @@ _WAYS = {
     "along +y": (0.0, 1.0, 0.0),
     "along -y": (0.0, -1.0, 0.0),
 }
+_MOST_FOUND = 4  # findings of a complete build that are shown, of two lines each
 _NEAREST = 3  # pairs, or coordinates that follow, that are shown without -v
 
 
@@ -48,6 +49,34 @@ def print_run(report: Report, terminal: Terminal) -> None:
         terminal.say(f"Open: articad show {shlex.quote(run)} ({page}, {page.stat().st_size / 1e6:.2f} MB)")
     else:
         terminal.say(f"Open: articad show {shlex.quote(run)}")
+
+
+def print_complete(report: Report, terminal: Terminal) -> None:
+    """Print a complete build in at most 15 lines: what holds, the findings that matter most, and where the files are."""
+    from articad.interference.statements import statements
+
+    assembly, run = report["assembly"], Path(report["run"])
+    print_counts(assembly, terminal)
+    for each in statements(
+        report["checks"], report.get("certificate"), moves=bool(assembly["drivers"]), certify="first correct the errors"
+    ):
+        terminal.say(each.sentence)
+    holders = (assembly, report["checks"], report, report.get("certificate", {}), *report["exports"].values())
+    alike: dict[str, list[Report]] = {}
+    for finding in (finding for holder in holders for finding in holder.get("findings", ()) if finding["severity"] != "info"):
+        alike.setdefault(finding["code"], []).append(finding)
+    groups = sorted(alike.values(), key=lambda group: group[0]["severity"] != "error")
+    for group in groups[:_MOST_FOUND]:
+        terminal.finding(group[0])
+    if more := sum(map(len, groups)) - len(groups[:_MOST_FOUND]):
+        terminal.say(f"  … and {more} more (--json lists them): {_counts(finding['code'] for group in groups for finding in group)}")
+    if "verification" in report:
+        faults = report["verification"]["faults"]
+        terminal.say(
+            f"Certificate: {run / 'certificate.json'}, {f'refuted by its checker: {faults[0]}' if faults else 'accepted by its checker'}."
+        )
+    files = [str(Path(export["main"]).relative_to(run)) for export in report["exports"].values()]
+    terminal.say(f"Files in {run}: {', '.join(files)}" if files else "Nothing is certified or exported before the checks at rest hold.")
 
 
 def print_statements(
@@ -74,6 +103,12 @@ def print_assembly(report: Report, terminal: Terminal) -> None:
     terminal.say()
     terminal.table(["joint", "type", "parent", "child"], [(name, j["type"], j["parent"], j["child"]) for name, j in joints.items()])
     terminal.say()
+    print_counts(report, terminal)
+
+
+def print_counts(report: Report, terminal: Terminal) -> None:
+    """Print how many parts, joints and freedoms an assembly has, and its mass."""
+    parts, joints = report["parts"], report["joints"]
     terminal.say(
         f"{report['name']}: {counted_things(len(parts), 'part', 'parts')}, {counted_things(len(joints), 'joint', 'joints')}, "
         f"{counted_things(report['freedoms'], 'freedom', 'freedoms')}, {report['mass_kg']:.4g} kg."

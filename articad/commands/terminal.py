@@ -48,6 +48,9 @@ class Terminal:
         quiet: Print findings and errors only.
         verbose: Print details, and tracebacks of defects.
         color: False forbids colour; by default it is used on a terminal.
+
+    Attributes:
+        logs: Whether each item that ends gets a line where no progress can be shown.
     """
 
     def __init__(
@@ -60,7 +63,7 @@ class Terminal:
         out: TextIO | None = None,
         err: TextIO | None = None,
     ) -> None:
-        self.as_json, self.quiet, self.verbose = as_json, quiet, verbose
+        self.as_json, self.quiet, self.verbose, self.logs = as_json, quiet, verbose, True
         self.out, self.err = out or sys.stdout, err or sys.stderr
         self._color = color and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
 
@@ -185,6 +188,8 @@ class Terminal:
         elif self._is_watched(self.err):
             with self._live(title, total, note) as tell:
                 yield tell
+        elif not self.logs:
+            yield _silent
         else:
             yield self._lines()
 

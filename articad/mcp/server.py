@@ -33,6 +33,7 @@ Paper = Literal["manual", "bom", "drawing"]
 Format = Literal["urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd"]
 
 _BUILD_S: Final = 600.0
+_COMPLETE_S: Final = 2400.0
 _PART_S: Final = 180.0
 _MORE_PARTS_S: Final = 30.0  # for each part beside the first
 _LOOK_S: Final = 300.0
@@ -79,11 +80,14 @@ class Tools:
         self,
         design: Design,
         plan: Annotated[dict[str, Any] | None, Field(description="the whole plan; without it, the plan.json that is there")] = None,
+        script: Annotated[str | None, Field(description="parts.py, a function for each part")] = None,
         detail: Detail = False,
     ) -> Json:
         """Save a plan and report everything that is wrong with it, before any geometry exists."""
         if plan is not None:
             self.bench.write_plan(design, plan)
+        if script is not None:
+            self.bench.write_common_script(design, script)
         report = await self._checked(design)
         return condensed(report, detail=True) if detail else answers.verdict(report)
 
@@ -138,14 +142,21 @@ class Tools:
         report = await self.bench.run("part", f"--kernel={kernel}", on=[str(folder), *names], seconds=seconds, tell=_teller(context))
         return condensed(report if detail else report | {"parts": answers.solids(report)}, detail=detail, keep=("parts",))
 
-    async def build(self, context: Context, design: Design, kernel: Dialect = "build123d", detail: Detail = False) -> Json:
+    async def build(
+        self,
+        context: Context,
+        design: Design,
+        kernel: Dialect = "build123d",
+        complete: Annotated[bool, Field(description="also certify, have the proof checked, and write every format")] = False,
+        detail: Detail = False,
+    ) -> Json:
         """Build all parts, assemble them, check interference at rest, write URDF and MJCF."""
         folder = self.bench.design(design)
-        return condensed(
-            await self._built(context, folder, kernel),
-            detail=detail,
-            keep=("freedoms", "mass_kg", "drivers", "deepest_overlap_mm", "files"),
-        )
+        report = await self._built(context, folder, kernel, complete=complete)
+        if "certificate" in report and not detail:
+            report |= {"proven": report["certificate"]["covers"], "accepted": report["verification"]["ok"]}
+        keep = ("freedoms", "mass_kg", "drivers", "deepest_overlap_mm", "files", "proven", "accepted")
+        return condensed(report, detail=detail, keep=keep)
 
     async def check(self, context: Context, design: Design, detail: Detail = False) -> Json:
         """Check interference at rest again, pair by pair."""
@@ -335,7 +346,7 @@ class Tools:
         self.bench.design(design)
         return self._plans.get(design) == self.bench.read(f"{design}/plan.json")
 
-    async def _built(self, context: Context, folder: Path, kernel: str) -> Json:
+    async def _built(self, context: Context, folder: Path, kernel: str, *, complete: bool = False) -> Json:
         out = folder / "run"
         if out.is_symlink():
             raise ReadError.at(out, f"{out.name} of {folder.name} is a link.", "Remove the link; a build makes the folder.")
@@ -344,8 +355,9 @@ class Tools:
             if others and not is_file(out / REQUEST_FILE, root=self.bench.root):
                 raise ReadError.at(out, f"{out.name} of {folder.name} is not a run.", "Move the folder away; a build makes it.")
             shutil.rmtree(out)  # the run is derived from the design
-        words = [f"--out={out}", f"--kernel={kernel}", "--no-pictures"]
-        report = await self.bench.run("build", *words, on=[str(folder)], seconds=_BUILD_S, tell=_teller(context))
+        words = [f"--out={out}", f"--kernel={kernel}", "--no-pictures", *(["--complete"] if complete else [])]
+        seconds = _COMPLETE_S if complete else _BUILD_S
+        report = await self.bench.run("build", *words, on=[str(folder)], seconds=seconds, tell=_teller(context))
         assembly, checks = report.get("assembly", {}), report.get("checks", {})
         depths = [pair.get("depth_mm") or 0.0 for pair in checks.get("pairs", ())]
         return report | {
