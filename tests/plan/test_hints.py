@@ -16,18 +16,17 @@ import pytest
 from articad.errors import PlanError
 from articad.findings import Finding
 from articad.findings.codes import CODES
-from articad.mcp.skill import skill
 from articad.plan.amending import amended
 from articad.plan.check import check_plan
 from articad.plan.schema import AssemblyPlan
 from articad_bench.obeying import followed
 from tests.obedience import assert_heals, worse
-from tests.plan.samples import Json, check, chest, pair
+from tests.plan.samples import DATA, Json, check, chest, pair
 from tests.plan.test_check import CASES, TURNING, Case, gears_with
 from tests.plan.test_schema import changed
 
 MOST_STEPS = 10
-(FOUR_BAR,) = (json.loads(text) for text in re.findall(r"```json\n(.*?)```", skill(), re.DOTALL) if '"four_bar"' in text)
+FOUR_BAR = json.loads((DATA / "pinned_four_bar.json").read_text())
 
 LINKAGES = [
     Case("E_DRIVER", amended(FOUR_BAR, {"joints.knee.driver": True}), "joints.knee", "already drive(s)"),
