@@ -253,12 +253,12 @@ def _samples(facets: Facets, body: manifold3d.Manifold, size: float) -> tuple[Fl
     normals = np.concatenate([facets.normals[drawn], facets.normals[owners[pick]]])
     lift = 1e-7 * size
     seeds, depths, kept = [], [], []
-    for index, (start, normal) in enumerate(zip(starts, normals, strict=True)):
-        hits = body.ray_cast(tuple(start - lift * normal), tuple(start - 2 * size * normal))
-        far = [hit.distance for hit in hits]
-        depth = far[0] * 2 * size if far else 0.0
+    rays = zip((starts - lift * normals).tolist(), (starts - 2 * size * normals).tolist(), strict=True)
+    for index, (near_end, far_end) in enumerate(rays):
+        hits = body.ray_cast(near_end, far_end)
+        depth = hits[0].distance * 2 * size if hits else 0.0
         if depth > max(10 * lift, INSIDE_MM):
-            seeds.append(start - normal * depth / 2)
+            seeds.append(starts[index] - normals[index] * depth / 2)
             depths.append(depth)
             kept.append(index)
     return points[kept], np.array(seeds).reshape(-1, 3), np.array(depths)

@@ -66,12 +66,14 @@ class Grown:
         outside = np.flatnonzero(h > 0)
         far = h.copy()
         if len(outside):
-            one, other = h[outside, None], heights[outside]
-            c = (self.planes[:, :3] @ self.planes[:, :3].T)[first[outside]]
-            apart = 1 - c * c
-            wedge = (other > c * one) & (apart > 1e-9)
-            squares = (one * one + other * other - 2 * c * one * other) / np.where(wedge, apart, 1.0)
-            far[outside] = np.sqrt(np.where(wedge, squares, one * one).max(axis=1))
+            cosines = self.planes[:, :3] @ self.planes[:, :3].T
+            steep = np.where(1 - cosines * cosines > 1e-9, cosines, np.inf)  # parallel planes form no wedge
+            rows, second = np.nonzero(heights[outside] > steep[first[outside]] * h[outside, None])
+            points_of = outside[rows]
+            one, other, c = h[points_of], heights[points_of, second], cosines[first[points_of], second]
+            squares = h[outside] ** 2
+            np.maximum.at(squares, rows, (one * one + other * other - 2 * c * one * other) / (1 - c * c))
+            far[outside] = np.sqrt(squares)
         return np.asarray(far)
 
 
