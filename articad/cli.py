@@ -12,10 +12,11 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from articad import __version__
-from articad.commands.command import COMMANDS, Command, closest
+from articad.commands.command import COMMANDS, Command, Unnamed, closest
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Terminal
@@ -142,6 +143,9 @@ def _run(command: Command, options: argparse.Namespace, terminal: Terminal) -> i
 
     scratch.sweep()
     try:
+        for value in vars(options).values():
+            if isinstance(value, Unnamed):
+                scratch.require_own(Path(value))
         if command.needs_libraries:
             require_libraries()
         report = command.run(options, terminal)

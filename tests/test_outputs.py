@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import ast
 import os
 import re
@@ -18,6 +19,8 @@ import pytest
 import articad
 import articad_bench
 from articad.cli import CANNOT_GO_ON, main
+from articad.commands.command import COMMANDS as REGISTERED
+from articad.commands.command import Unnamed
 from articad.errors import ReadError, RunError, WriteError
 from articad.geometry.mesh_files import write_stl
 from articad.geometry.shapes import tube
@@ -291,6 +294,39 @@ def test_no_command_writes_through_what_is_in_the_place_of_a_file(
             assert "defect" not in told.out + told.err
             assert untouched(outside)
             assert (file.lstat().st_ino, file.lstat().st_mode) == (before.st_ino, before.st_mode)
+
+
+DEFAULTS = {
+    "bom r.urdf": "papers",
+    "manual r.urdf --to html": "papers",
+    "render r.urdf --size 64 --views iso": "pictures",
+    "batch items.jsonl": "batch",
+    "skill install": ".claude",
+    "build plan": "runs",
+}
+
+
+@pytest.mark.parametrize("line", DEFAULTS)
+def test_no_command_writes_by_default_where_a_link_leads(line: str, work: Path, outside: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A user who names the link means it; a default that is a link is somebody else's."""
+    (work / "items.jsonl").write_text("{}\n")
+    shutil.copytree(Path(articad.__file__).parent / "starter", work / "plan")
+    (work / DEFAULTS[line]).symlink_to(outside, target_is_directory=True)
+
+    assert run(line) == CANNOT_GO_ON
+    told = capsys.readouterr()
+    assert DEFAULTS[line] in told.out + told.err
+    assert "link" in told.out + told.err
+    assert untouched(outside)
+
+
+def test_every_folder_that_is_written_to_by_default_is_one_that_may_be_refused() -> None:
+    for name, held in REGISTERED.items():
+        parser = argparse.ArgumentParser()
+        held.arguments(parser)
+        for action in parser._actions:
+            if action.metavar == "DIR" and isinstance(action.default, str) and action.default != ".":
+                assert isinstance(action.default, Unnamed), (name, action.option_strings)
 
 
 @pytest.mark.parametrize("beside", ["", "-wal", "-journal"])

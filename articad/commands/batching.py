@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from articad.commands.command import argument, command
+from articad.commands.command import argument, command, output_folder
 from articad.commands.options import ENGINE, amount, positive
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     "batch",
     "Make many assemblies from plans with parameter values; check, export and store them with their provenance.",
     argument("spec", metavar="BATCH.json", help="items, or samples of plans' parameters"),
-    argument("--out", metavar="DIR", default="batch", help="a folder for each item; existing items are not made again (batch)"),
+    output_folder("--out", "batch", "a folder for each item; existing items are not made again"),
     *ENGINE,
     argument("--jobs", metavar="N", type=positive, default=None, help="workers of this machine (one per processor)"),
     argument("--memory", metavar="GB", type=amount, default=4.0, help="data of each worker process (4)"),

@@ -50,6 +50,23 @@ def argument(*names: str, **options: Any) -> _Argument:
     return add
 
 
+class Unnamed(str):
+    """A folder that a command writes to unless the command line names another."""
+
+    __slots__ = ()
+
+
+def output_folder(flag: str, default: str, purpose: str) -> _Argument:
+    """Return a function that adds the argument for the folder that a command writes to.
+
+    Args:
+        flag: `--out`.
+        default: The folder if none is named. Where it leads out of the working folder, the command line has to name one.
+        purpose: The help.
+    """
+    return argument(flag, metavar="DIR", default=Unnamed(default), help=f"{purpose} ({default})")
+
+
 def closest(word: str, known: Iterable[str]) -> str:
     """Suggest the closest known word, as `articad.errors` does for names in plans, but with fewer imports."""
     close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from articad.commands.assembling import FASTEN
-from articad.commands.command import argument, closest, command
+from articad.commands.command import argument, closest, command, output_folder
 from articad.commands.options import SANDBOX, amount, names
 from articad.commands.steps import loaded
 
@@ -23,7 +23,7 @@ DRAWINGS: Final = ("svg", "pdf", "dxf")
 MANUALS: Final = ("pdf", "svg", "html")
 _ASSEMBLY: Final = "assembly"  # name of the drawing of all parts, after the product's name; no drawing of a part has it
 PURCHASED = argument("--purchased", metavar="NAMES", type=names, default=(), help="parts that are bought; * and ? are wildcards")
-PAPERS_OUT = argument("--out", metavar="DIR", default="papers", help="where to write (papers)")
+PAPERS_OUT = output_folder("--out", "papers", "where to write")
 
 
 def bills(text: str) -> tuple[str, ...]:

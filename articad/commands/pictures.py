@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from articad.commands.command import argument, command
+from articad.commands.command import argument, command, output_folder
 from articad.commands.options import SANDBOX, extent
 from articad.commands.steps import loaded
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     argument("--clean", action="store_true", help="a product picture: materials, soft light and shadow, no labels"),
     argument("--transparent", action="store_true", help="a clean picture without background; its shadow stays"),
     argument("--renderer", choices=["embree", "pyvista"], default="embree", help="pyvista is smoother but needs OpenGL"),
-    argument("--out", metavar="DIR", default="pictures", help="where to write (pictures)"),
+    output_folder("--out", "pictures", "where to write"),
     SANDBOX,
 )
 def _render(options: argparse.Namespace, terminal: Terminal) -> Report:

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from articad.commands.command import argument, command
+from articad.commands.command import argument, command, output_folder
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -43,7 +43,7 @@ def _mcp(options: argparse.Namespace, _terminal: Terminal) -> Report:
         default="print",
         help="print (the page), install, or a topic: a page behind it, or a type of the plan",
     ),
-    argument("--dir", metavar="DIR", default=str(_SKILLS), help=f"for install: folder of the skill ({_SKILLS})"),
+    output_folder("--dir", str(_SKILLS), "for install: folder of the skill"),
 )
 def _skill(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.mcp.skill import page, skill

@@ -99,6 +99,22 @@ def folder_beside(target: Path) -> Iterator[Path]:
         _unlock(lock)
 
 
+def require_own(folder: Path) -> None:
+    """Check that a folder that no user named is no link, and lies in none: a link would lead what is written to somebody else's place.
+
+    Args:
+        folder: Relative to the working folder.
+
+    Raises:
+        OSError: If it is or does.
+    """
+    for place in (folder, *folder.parents):
+        if place.is_symlink():
+            raise FileExistsError(
+                errno.EEXIST, "a link is in the place of the folder that is written to by default; name a folder", str(place)
+            )
+
+
 def _require_replaceable(path: Path) -> None:
     """Check that nothing or a regular file is at a path.
 

@@ -677,6 +677,10 @@ def _new_directory(prompt: str) -> Path:
     ascii_text = unicodedata.normalize("NFKD", prompt).encode("ascii", "ignore").decode().lower()
     slug = re.sub(r"[^a-z0-9]+", "-", ascii_text)[:_SLUG_LENGTH].strip("-") or "run"
     day = time.strftime("%Y-%m-%d")
+    if DEFAULT_ROOT.is_symlink():
+        raise RunError.at(
+            DEFAULT_ROOT, f"A link is in the place of {DEFAULT_ROOT}, to which runs are written by default.", "Name a directory with --out."
+        )
     for _ in range(_NAME_TRIES):
         path = DEFAULT_ROOT / f"{day}-{slug}-{secrets.token_hex(2)}"
         if not path.exists():

@@ -8,7 +8,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from articad.commands.command import argument, command
+from articad.commands.command import argument, command, output_folder
 from articad.commands.options import ASKING, ENGINE, FORCE, SANDBOX, positive
 from articad.commands.steps import build_cache, sandbox_level
 from articad_bench.terminal_tables import print_data, print_judged, print_sentences, print_table
@@ -60,12 +60,7 @@ if TYPE_CHECKING:
         "--sentences", action="store_true", help="list: which check holds each number of a task, and which sentence states each check"
     ),
     argument("--kind", choices=["articulated", "static", "industrial", "hard"], default=None, help="only tasks of this kind"),
-    argument(
-        "--out",
-        metavar="DIR",
-        default="bench",
-        help="where rows, runs and the tables of faults and cheats are kept; existing rows are not made again (bench)",
-    ),
+    output_folder("--out", "bench", "where rows, runs and the tables of faults and cheats are kept; existing rows are not made again"),
     argument(
         "--variant",
         choices=["full", "late", "no-rollback", "no-memory", "single-loop"],
