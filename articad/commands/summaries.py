@@ -69,7 +69,8 @@ def print_complete(report: Report, terminal: Terminal) -> None:
     for group in groups[:_MOST_FOUND]:
         terminal.finding(group[0])
     if more := sum(map(len, groups)) - len(groups[:_MOST_FOUND]):
-        terminal.say(f"  … and {more} more (--json lists them): {_counts(finding['code'] for group in groups for finding in group)}")
+        places = f"{run / 'checks.json'} and {run / 'export'}/*/losses.json"
+        terminal.say(f"  … and {more} more ({places}): {_counts(finding['code'] for group in groups for finding in group)}")
     if "verification" in report:
         faults = report["verification"]["faults"]
         terminal.say(
