@@ -9,10 +9,9 @@ from typing import Final
 from articad import examples
 from articad.assembly import Assembly
 from articad.errors import ReadError
-from articad.files import SCRIPT_BYTES, read_file
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.kernels.parts import SCRIPT_SUFFIX
+from articad.kernels.parts import SCRIPT_SUFFIX, read_script
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad_bench.task import Task
@@ -24,13 +23,24 @@ def reference_folder(folder: Path, task: Task) -> Path:
     """Return the folder of a task's reference solution.
 
     Raises:
-        ReadError: If it has none.
+        ReadError: If it has none, or a link is in its place.
     """
     if task.reference is None:
         raise ReadError.at(folder, f"{task.name} has no reference solution.", "Give it one: reference/plan.json and reference/parts/.")
     if task.reference.startswith(_EXAMPLE):
         return examples.folder(task.reference.removeprefix(_EXAMPLE))
-    return folder / task.reference
+    return _own(folder / task.reference)
+
+
+def _own(place: Path) -> Path:
+    """Return a folder of a task, which is no link.
+
+    Raises:
+        ReadError: If it is one.
+    """
+    if place.is_symlink():
+        raise ReadError.at(place, f"{place} is a link.", "Copy the folder there.")
+    return place
 
 
 def reference(folder: Path, task: Task, *, cache: BuildCache | None = None, kernel: PartKernel | None = None) -> Assembly:
@@ -64,7 +74,7 @@ def edited_reference(
         raise ReadError.at(folder, f"{task.name} has no edit that its reference makes.", "Give edit.values or edit.reference.")
     if edit.reference is None:
         return before.with_parameters(**edit.values)
-    place = folder / edit.reference
+    place = _own(folder / edit.reference)
     plan = AssemblyPlan.load(place)
     kernel = kernel or kernel_named(plan.kernel)
     scripts = _scripts((place / "parts", reference_folder(folder, task) / "parts"), plan, kernel)
@@ -76,4 +86,4 @@ def _scripts(folders: Sequence[Path], plan: AssemblyPlan, kernel: PartKernel) ->
     suffix = SCRIPT_SUFFIX[kernel.name]
     names = [name for name, part in resolve(plan).parts.items() if part.derivation is None]
     files = {name: next((file for folder in folders if (file := folder / f"{name}{suffix}").is_file()), None) for name in names}
-    return {name: read_file(file, SCRIPT_BYTES, root=file.parent) for name, file in files.items() if file is not None}
+    return {name: read_script(file, file.parents[1]) for name, file in files.items() if file is not None}

@@ -68,22 +68,6 @@ class Drawing(PlanObject):
     notes: tuple[str, ...] = ()
 
 
-class Edit(PlanObject):
-    """A change that is asked for once the product stands; every check must hold again with its new numbers.
-
-    Attributes:
-        prompt: What is to change.
-        checks: In place of the task's checks of the same kinds; its others must hold once more as they are.
-        values: Of the reference's parameters, in their own units, that make the change.
-        reference: Folder of a second plan that makes the change, relative to the task, where numbers do not.
-    """
-
-    prompt: str
-    checks: tuple[AnyCheck, ...]
-    values: dict[str, float] = Field(default_factory=dict)
-    reference: str | None = None
-
-
 def _is_name(text: str) -> str:
     if not text or set(text) <= {"."} or any(sign in text for sign in "/\\\0"):
         raise ValueError("a name without folders is needed")
@@ -91,6 +75,22 @@ def _is_name(text: str) -> str:
 
 
 _Name = Annotated[str, AfterValidator(_is_name)]
+
+
+class Edit(PlanObject):
+    """A change that is asked for once the product stands; every check must hold again with its new numbers.
+
+    Attributes:
+        prompt: What is to change.
+        checks: In place of the task's checks of the same kinds; its others must hold once more as they are.
+        values: Of the reference's parameters, in their own units, that make the change.
+        reference: Folder beside `task.json` with a second plan that makes the change, where numbers do not.
+    """
+
+    prompt: str
+    checks: tuple[AnyCheck, ...]
+    values: dict[str, float] = Field(default_factory=dict)
+    reference: _Name | None = None
 
 
 class Task(PlanObject):
@@ -105,7 +105,7 @@ class Task(PlanObject):
         drawing: How `drawing.png`, which is one of them, is drawn.
         checks: All must hold.
         edit: A change afterwards.
-        reference: Folder of a plan with part scripts that passes, relative to the task; or "example:NAME".
+        reference: Folder beside `task.json` with a plan and part scripts that pass; or "example:NAME".
         unheld: Stretches of the texts with numbers that no check holds, each with the reason; see `articad_bench.sentences`.
     """
 
@@ -118,7 +118,7 @@ class Task(PlanObject):
     drawing: Drawing | None = None
     checks: tuple[AnyCheck, ...]
     edit: Edit | None = None
-    reference: str | None = "reference"
+    reference: _Name | None = "reference"
     unheld: dict[str, str] = Field(default_factory=dict)
 
     @property

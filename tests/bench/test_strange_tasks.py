@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 
+from articad import examples
+from articad.assembly import Assembly
 from articad.errors import ReadError
+from articad.plan.schema import AssemblyPlan
 from articad_bench.judge import JUDGED, opinions_in
+from articad_bench.reference import edited_reference, reference
 from articad_bench.row import ROW, kept_row, rows_in
 from articad_bench.task import read_image, read_json, read_task, write_task
+from tests.crash.stand_in import FixedKernel
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no pipes in folders")
 SECRET = "the first words of a secret"
@@ -96,3 +103,41 @@ def test_what_is_no_regular_file_of_json_is_refused(kind: str, place: str, reade
     with pytest.raises((ReadError, OSError, ValueError)) as error:
         reader(task)
     assert SECRET not in str(error.value)
+
+
+@pytest.fixture
+def stranger(task: Path) -> Path:
+    """A sound solution outside the task's folder, which no task may lead to."""
+    folder = task.parent / "elsewhere"
+    shutil.copytree(examples.folder("four_bar"), folder)
+    return folder
+
+
+@pytest.mark.parametrize("name", ["../elsewhere", "ABSOLUTE", "..", "", "a/../../elsewhere", "a\\b", "a\0b"])
+@pytest.mark.parametrize("whose", ["reference", "edit"])
+def test_a_task_names_no_solution_outside_its_folder(whose: str, name: str, task: Path, stranger: Path) -> None:
+    named = str(stranger) if name == "ABSOLUTE" else name
+    edit = {"prompt": "wider", "checks": TASK["checks"], "reference": named}
+    (task / "task.json").write_text(json.dumps(TASK | ({"edit": edit} if whose == "edit" else {"reference": named})))
+    with pytest.raises(ReadError, match="reference"):
+        read_task(task)
+
+
+@pytest.mark.parametrize("linked", [".", "plan.json", "parts"])
+@pytest.mark.parametrize("whose", ["reference", "edit"])
+def test_a_link_to_a_solution_outside_the_tasks_folder_is_not_followed(whose: str, linked: str, task: Path, stranger: Path) -> None:
+    """The folder of a solution, its plan, or the folder of its scripts is a link."""
+    edit = {"prompt": "wider", "checks": TASK["checks"], "reference": "edited"}
+    (task / "task.json").write_text(json.dumps(TASK | {"edit": edit}))
+    for name in ("reference", "edited"):
+        shutil.copytree(stranger, task / name)
+    place = task / ("reference" if whose == "reference" else "edited")
+    if (place / linked).is_dir():
+        shutil.rmtree(place / linked)
+    else:
+        (place / linked).unlink()
+    (place / linked).symlink_to(stranger / linked)
+    built = Assembly.from_plan(AssemblyPlan.load(stranger), stranger / "parts", kernel=FixedKernel())
+    build = reference if whose == "reference" else partial(edited_reference, before=built)
+    with pytest.raises(ReadError, match="link"):
+        build(task, read_task(task), kernel=FixedKernel())
