@@ -274,11 +274,7 @@ class Assembly:
         """
         if self.resolved is None:
             raise PlanError("This assembly was not made from a plan, so it has no parameters.")
-        scripts = {name: part.script for name, part in self.realised.items() if part.script is not None}
-        parameters = {**self.resolved.overrides, **values}
-        return Assembly.from_plan(
-            self.resolved.plan, scripts, kernel=self._kernel, cache=self._cache, deflection=self.deflection, parameters=parameters
-        )
+        return self._rebuilt(self.resolved.plan, {**self.resolved.overrides, **values})
 
     def with_changes(self, changes: Mapping[str, Any], *, build: bool = True) -> Assembly:
         """Return the assembly of the plan with some of its values replaced; only parts whose numbers changed are built again.
@@ -301,8 +297,12 @@ class Assembly:
             return Assembly.from_realised(
                 resolved, self.realised, kernel=self._kernel, cache=self._cache, deflection=self.deflection, findings=self.findings
             )
+        return self._rebuilt(plan, overrides)
+
+    def _rebuilt(self, plan: AssemblyPlan, parameters: Mapping[str, float]) -> Assembly:
+        """Build a plan with the scripts of this assembly."""
         scripts = {name: part.script for name, part in self.realised.items() if part.script is not None}
-        return Assembly.from_plan(plan, scripts, kernel=self._kernel, cache=self._cache, deflection=self.deflection, parameters=overrides)
+        return Assembly.from_plan(plan, scripts, kernel=self._kernel, cache=self._cache, deflection=self.deflection, parameters=parameters)
 
     @property
     def environment(self) -> frozenset[str]:

@@ -32,6 +32,7 @@ from articad.geometry.faces import Face
 from articad.interference.report import PairCheck
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
+from articad.plan.fields import lengths_in
 from articad.plan.resolve import Fit, ResolvedPlan
 from articad.plan.usage import CLEARANCE
 from articad.realisation.bores import TILT, along, beside
@@ -337,14 +338,14 @@ def _stated_by(surface: _Round, dimensions: Mapping[str, float]) -> tuple[str, i
 
 def _is_given(length: float, dimensions: Mapping[str, float]) -> bool:
     """Return whether a length is that of a dimension, or the sum or difference of two."""
-    stated = np.array([value for name, value in dimensions.items() if not name.endswith(("_deg", "_count"))], dtype=np.float64)
+    stated = np.array(list(lengths_in(dimensions).values()))
     terms = np.concatenate([[0.0], stated, -stated])
     return bool((np.abs(terms[:, None] + terms - length) < _ROUNDING_MM).any())
 
 
 def _diameters(dimensions: Mapping[str, float]) -> Iterator[tuple[str, int, float]]:
     """Yield each dimension, how many times it is taken, and the diameter that it then states, with or without a clearance."""
-    lengths = {name: float(value) for name, value in dimensions.items() if not name.endswith(("_deg", "_count"))}
+    lengths = lengths_in(dimensions)
     clearances = [0.0, *(value for name, value in lengths.items() if CLEARANCE.search(name))]
     for name, value in lengths.items():
         for clearance, sign, times, twice in itertools.product(clearances, (1, -1), (1, 2), (1, 2)):

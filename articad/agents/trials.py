@@ -9,18 +9,21 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Final
 
 from articad.agents.orders import source_of
 from articad.aliases import Json
 from articad.assembly import Assembly
+from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
 from articad.findings import Finding, Findings
 from articad.interference.check import check_scene
-from articad.kernels.slips import UNITS, numbers_of
+from articad.interference.scene import Scene
+from articad.kernels.slips import LONGEST, UNITS, longest_other, numbers_of
 from articad.kinematics.joints import Coordinate
+from articad.plan.fields import lengths_in
 from articad.plan.remedies import Changes, digits, of_couplings, offered, turned, with_other_sign
 from articad.plan.resolve import ResolvedPlan
 from articad.render.pictures import motion_frames
@@ -36,7 +39,6 @@ _POSES: Final = 9  # of a joint's range
 _HALVINGS: Final = 6  # of the step between a free pose and the next one
 _MARGIN: Final = 0.01  # of a range: distance from the pose at which parts meet
 _SHORT: Final = 0.05  # of a range: a shorter one is no motion
-_LONGEST: Final = 5.0  # a corrected length over the longest other one of its part
 _DECIMALS: Final = 4  # of mm in a change
 _SOUGHT: Final = frozenset({"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"}) | {
     "E_FLOATING",
@@ -85,12 +87,13 @@ def _still_overlap(assembly: Assembly, asked: Sequence[Finding]) -> bool:
     """Return whether two parts that overlapped at rest still do."""
     pairs = {tuple(finding.parts) for finding in asked if finding.code in {"E_OVERLAP", "E_STATIC_OVERLAP"} and len(finding.parts) == 2}
     scene, at_rest = assembly.scene(), assembly.at()
-    for pair in sorted(pairs):
-        if all(name in scene.bodies for name in pair):
-            alone = replace(scene, meshes={name: scene.meshes[name] for name in pair})
-            if check_scene(alone, at_rest, over="pose").findings.errors:
-                return True
-    return False
+    return any(set(pair) <= scene.bodies.keys() and not _is_clear(scene, pair, at_rest) for pair in sorted(pairs))
+
+
+def _is_clear(scene: Scene, pair: Collection[str], poses: Mapping[str, SE3]) -> bool:
+    """Return whether two parts are clear of each other, whatever all others are."""
+    alone = replace(scene, meshes={name: mesh for name, mesh in scene.meshes.items() if name in pair})
+    return not check_scene(alone, poses, over="pose").findings.errors
 
 
 def _candidates(asked: Sequence[Finding], assembly: Assembly, resolved: ResolvedPlan) -> Iterator[tuple[Changes, bool]]:
@@ -111,23 +114,21 @@ def _candidates(asked: Sequence[Finding], assembly: Assembly, resolved: Resolved
 def _units(asked: Sequence[Finding], resolved: ResolvedPlan) -> Iterator[Changes]:
     """Yield numbers that shape the parts at fault, in another unit or with the other sign; those that become rounder first."""
     sources = dict.fromkeys(source_of(name, resolved) for finding in asked for name in finding.parts if name in resolved.parts)
-    trials: dict[str, tuple[float, float]] = {}
+    trials: dict[tuple[str, float], float] = {}  # what a number may have been meant to be, and what it is
     for source in sources:
-        lengths = {name: float(value) for name, value in resolved.parts[source].dimensions.items() if not name.endswith(("_deg", "_count"))}
+        lengths = lengths_in(resolved.parts[source].dimensions)
         for address, (value, driven) in numbers_of(resolved, source, lengths).items():
-            longest = max((abs(length) for name, length in lengths.items() if name not in driven), default=0.0)
-            for meant in _meant(value, longest):
-                trials.setdefault(f"{address} {meant}", (value, meant))
-    for key, _ in sorted(trials.items(), key=lambda item: digits(item[1][1]) - digits(item[1][0])):
-        address, _, meant_text = key.partition(" ")
-        yield {address: float(meant_text)}
+            for meant in _meant(value, longest_other(lengths, driven)):
+                trials.setdefault((address, meant), value)
+    for (address, meant), _ in sorted(trials.items(), key=lambda item: digits(item[0][1]) - digits(item[1])):
+        yield {address: float(meant)}
 
 
 def _meant(value: float, longest: float) -> Iterator[float]:
     """Yield what a length may have been meant to be, beside the longest other one of its part [mm]."""
     for factor in UNITS:
         meant = round(value * factor, _DECIMALS)
-        if 0.0 < abs(meant) <= _LONGEST * longest and digits(meant) < digits(value):
+        if 0.0 < abs(meant) <= LONGEST * longest and digits(meant) < digits(value):
             yield meant
     if abs(value) > longest > 0.0:
         yield round(value / 1000.0, _DECIMALS)
@@ -194,11 +195,7 @@ def _clear(column: int, colliding: Sequence[Finding], assembly: Assembly) -> Cal
         q = assembly.mechanism.rest.copy()
         q[column] = value
         poses = dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
-        for pair in pairs:
-            alone = replace(scene, meshes={name: mesh for name, mesh in scene.meshes.items() if name in pair})
-            if check_scene(alone, poses, over="pose").findings.errors:
-                return False
-        return True
+        return all(_is_clear(scene, pair, poses) for pair in pairs)
 
     return clear
 

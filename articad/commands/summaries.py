@@ -155,6 +155,8 @@ def print_support(report: Report, terminal: Terminal) -> None:
 
 def print_order(report: Report, terminal: Terminal) -> None:
     """Print the steps of an order of assembly, each with its path."""
+    from articad.disassembly.steps import turned_over
+
     for step in report["steps"]:
         what = f"{step['subassembly']} ({', '.join(step['parts'])})" if step["subassembly"] else ", ".join(step["parts"])
         if not step["moves"]:
@@ -162,9 +164,7 @@ def print_order(report: Report, terminal: Terminal) -> None:
             continue
         path = ", then ".join(f"{_way(move['direction'])} by {move['length_mm']:.4g} mm" for move in step["moves"])
         forced = "".join(f", {a} and {b} by {how}" for a, b, how in step["permitted"])
-        forced += "".join(
-            f", with {name} turned over to {math.degrees(value):.0f}°" for name, value in step["at"].items() if step["opened"]
-        )
+        forced += turned_over(step["at"]) if step["opened"] else ""
         terminal.say(f"{step['number']:3}. {step['assembly']}: {what} {path}; {step['strength']}{forced}")
     for blocked in report["blocked"]:
         terminal.say(f"No order puts these together: {', '.join(blocked['parts'])}.")

@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from articad.connectors.se3 import SE3
-from articad.disassembly.poses import poses_at
+from articad.disassembly.poses import poses_at, reached_at
 from articad.disassembly.steps import AssemblyStep
 from articad.errors import ArticadError
 from articad.interference.overlap import overlap
@@ -58,18 +58,17 @@ def is_opened(mechanism: Mechanism, parts: Collection[str]) -> bool:
     return len(inside) - len(parts) < len(mechanism.joints) - len(mechanism.parts)
 
 
-def remaining(mechanism: Mechanism, parts: Collection[str], base: str, joint: str | None = None) -> Mechanism | None:
+def remaining(mechanism: Mechanism, parts: Collection[str], base: str, joint: str) -> Mechanism | None:
     """Return the mechanism of some of the parts; None if joints do not connect them.
 
     Args:
         mechanism: The whole.
         parts: The parts that remain.
         base: The one that stands still.
-        joint: The joint that drives it; the others then have no limits. The mechanism's own by default.
+        joint: The joint that drives it; the others have no limits.
     """
     inside = [each for each in mechanism.joints if {each.parent, each.child} <= set(parts)]
-    if joint is not None:
-        inside = [_loosened(each) if each.name != joint else replace(each, driver=True) for each in inside]
+    inside = [_loosened(each) if each.name != joint else replace(each, driver=True) for each in inside]
     names = {each.name for each in inside}
     couplings = [each for each in mechanism.couplings if {each.a.split(".")[0], each.b.split(".")[0]} <= names]
     try:
@@ -105,7 +104,7 @@ def folded(scene: Scene, mechanism: Mechanism, parts: Collection[str], base: str
         for share in _SHARES:
             for end in sorted(ends, key=lambda each: -abs(each - rest)):
                 value = rest + share * (end - rest)
-                poses = _placed(whole, joint.name, value)
+                poses = reached_at(whole, {joint.name: value})
                 if poses is not None and abs(value - rest) > _SAME:
                     yield Folded(_limited(whole, joint.name, rest, value), joint.name, value, poses)
 
@@ -123,7 +122,7 @@ def step_poses(mechanism: Mechanism, step: AssemblyStep, base: str) -> dict[str,
     found = {name: mechanism.at_rest[index] for index, name in enumerate(mechanism.parts)}
     for joint, value in step.at.items():
         whole = remaining(mechanism, (*step.onto, *step.parts), base if base in step.onto else step.onto[0], joint)
-        found |= (None if whole is None else _placed(whole, joint, value)) or {}
+        found |= (None if whole is None else reached_at(whole, {joint: value})) or {}
     return found
 
 
@@ -136,19 +135,19 @@ def _ends(joint: Joint) -> tuple[float, float]:
 def _farthest(scene: Scene, whole: Mechanism, joint: Joint, end: float) -> float:
     """Return the value nearest to an end up to which parts are not seen to meet."""
     free, rest = float(joint.rest[0]), float(joint.rest[0])
-    start = _placed(whole, joint.name, rest)
+    start = reached_at(whole, {joint.name: rest})
     if start is None:
         return rest
     step = (end - rest) / _STEPS
     for value in rest + step * np.arange(1, _STEPS + 1):
-        if not _is_free(scene, start, _placed(whole, joint.name, float(value))):
+        if not _is_free(scene, start, reached_at(whole, {joint.name: float(value)})):
             break
         free = float(value)
     else:
         return free
     for _ in range(_HALVINGS):
         step /= 2
-        if _is_free(scene, start, _placed(whole, joint.name, free + step)):
+        if _is_free(scene, start, reached_at(whole, {joint.name: free + step})):
             free += step
     return free
 
@@ -165,16 +164,6 @@ def _is_free(scene: Scene, start: Mapping[str, SE3], poses: Mapping[str, SE3] | 
             if moved > _SAME and overlap(scene.bodies[a], scene.bodies[b], T).depth > scene.passable(a, b):
                 return False
     return True
-
-
-def _placed(whole: Mechanism, joint: str, value: float) -> dict[str, SE3] | None:
-    """Return the poses of the parts where one joint has a value and other drivers are at rest; None if they are not reached."""
-    q = np.array(whole.rest, dtype=np.float64)
-    q[[driver.joint for driver in whole.drivers].index(joint)] = value
-    solution = whole.solve(q[None])
-    if not bool(solution.reached[0]):
-        return None
-    return {name: solution.poses[0][index] for index, name in enumerate(whole.parts)}
 
 
 def _limited(whole: Mechanism, joint: str, rest: float, value: float) -> Mechanism:

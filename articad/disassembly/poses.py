@@ -10,8 +10,9 @@ import numpy as np
 from articad.connectors.se3 import SE3
 from articad.interference.sampled_ranges import sampled_ranges
 from articad.kinematics.mechanism import Mechanism
+from articad.kinematics.solution import Solution
 
-__all__ = ["OtherPose", "end_poses", "poses_at"]
+__all__ = ["OtherPose", "end_poses", "poses_at", "reached_at"]
 
 _SAME = 1e-9  # rad or mm
 
@@ -36,16 +37,13 @@ def end_poses(mechanism: Mechanism, *, middle: bool = True) -> list[OtherPose]:
         middle: Whether to add the middle of each range.
     """
     found = []
-    places = {driver.name: at for at, driver in enumerate(mechanism.drivers)}
+    drivers = {driver.name for driver in mechanism.drivers}
     for freedom in sampled_ranges(mechanism):
         values = [freedom.lower, freedom.upper, *([(freedom.lower + freedom.upper) / 2] if middle else [])]
-        for value in values if freedom.name in places else ():
-            q = np.array(mechanism.rest, dtype=np.float64)
-            q[places[freedom.name]] = value
-            solution = mechanism.solve(q[None])
-            if abs(value - freedom.rest) > _SAME and bool(solution.reached[0]):
-                placed = solution.poses[0]
-                found.append(OtherPose({freedom.name: value}, {name: placed[k] for k, name in enumerate(mechanism.parts)}))
+        for value in values if freedom.name in drivers else ():
+            at = {freedom.name: value}
+            if abs(value - freedom.rest) > _SAME and (poses := reached_at(mechanism, at)) is not None:
+                found.append(OtherPose(at, poses))
     return found
 
 
@@ -56,8 +54,19 @@ def poses_at(mechanism: Mechanism, at: Mapping[str, float]) -> dict[str, SE3]:
         mechanism: Places the parts.
         at: By driver [rad, mm].
     """
-    q = np.array(mechanism.rest, dtype=np.float64)
-    for place, driver in enumerate(mechanism.drivers):
-        q[place] = at.get(driver.name, q[place])
-    placed = mechanism.solve(q[None]).poses[0]
-    return {name: placed[index] for index, name in enumerate(mechanism.parts)}
+    return _by_part(mechanism, _solved(mechanism, at))
+
+
+def reached_at(mechanism: Mechanism, at: Mapping[str, float]) -> dict[str, SE3] | None:
+    """Return the same as `poses_at`; None if loops cannot be closed there."""
+    solution = _solved(mechanism, at)
+    return _by_part(mechanism, solution) if bool(solution.reached[0]) else None
+
+
+def _solved(mechanism: Mechanism, at: Mapping[str, float]) -> Solution:
+    q = [at.get(driver.name, rest) for driver, rest in zip(mechanism.drivers, mechanism.rest, strict=True)]
+    return mechanism.solve(np.array(q, dtype=np.float64)[None])
+
+
+def _by_part(mechanism: Mechanism, solution: Solution) -> dict[str, SE3]:
+    return {name: solution.poses[0][index] for index, name in enumerate(mechanism.parts)}

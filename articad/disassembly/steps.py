@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -12,7 +13,7 @@ from articad.aliases import Fastening
 from articad.arrays import FloatArray
 from articad.findings import Finding, Findings
 
-__all__ = ["AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow", "shown_path", "words_of"]
+__all__ = ["AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow", "shown_path", "turned_over", "words_of"]
 
 _SHOWN: Final = (0.14, 0.75)  # of the size of what is shown: least and largest distance of new parts from their place
 _FROM: Final = {
@@ -114,13 +115,12 @@ def words_of(step: AssemblyStep) -> str:
         return f"Start with {what}."
     ways = [_way(move) for move in step.moves]
     over = ", with the assembly turned over or held up" if any(move.direction[2] > _UPWARDS for move in step.moves) else ""
-    turned = f", with {' and '.join(_moved(*each) for each in step.at.items())}" if step.opened else ""
-    return f"Put {what} in place: {', then '.join(ways)}{over}{turned}."
+    return f"Put {what} in place: {', then '.join(ways)}{over}{turned_over(step.at) if step.opened else ''}."
 
 
-def _moved(joint: str, value: float) -> str:
-    """Return to which value a joint is moved for a step."""
-    return f"{joint} turned over to {math.degrees(value):.0f}°"
+def turned_over(at: Mapping[str, float]) -> str:
+    """Return to which values joints of an opened loop are turned [rad], as the end of a sentence."""
+    return f", with {' and '.join(f'{joint} turned over to {math.degrees(value):.0f}°' for joint, value in at.items())}"
 
 
 def _way(move: Move) -> str:

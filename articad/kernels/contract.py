@@ -17,6 +17,7 @@ from articad.errors import ConnectorError, did_you_mean
 from articad.findings import Finding, Findings
 from articad.kernels.failures import scrubbed
 from articad.kernels.results import PoisonedError, number, numbers
+from articad.plan.fields import lengths_in
 from articad.plan.resolve import ResolvedPart
 
 ENVELOPE_TOLERANCE = 0.02  # of each side: the contract's 2 %
@@ -94,7 +95,7 @@ def dimension_findings(target: ResolvedPart, bbox: FloatArray) -> Iterator[Findi
     its script builds in another unit (W_PART_SCALE).
     """
     diagonal = float(np.linalg.norm(bbox[1] - bbox[0]))
-    lengths = {name: float(value) for name, value in target.dimensions.items() if not name.endswith(("_deg", "_count"))}
+    lengths = lengths_in(target.dimensions)
     long = {name: value for name, value in lengths.items() if abs(value) > LONGEST_OF_PART * diagonal > 0.0}
     if len(set(long.values())) > 1:
         longest = max(long, key=lambda name: abs(long[name]))
@@ -151,8 +152,7 @@ def _then(target: ResolvedPart, name: str, value: float) -> str:
 
 def lengths_of(target: ResolvedPart) -> dict[str, float]:
     """Return the lengths of a part by their addresses in the plan [mm]."""
-    lengths = {name: float(value) for name, value in target.dimensions.items() if not name.endswith(("_deg", "_count"))}
-    return {f"parts.{target.spec.name}.dimensions.{name}": value for name, value in lengths.items()}
+    return {f"parts.{target.spec.name}.dimensions.{name}": value for name, value in lengths_in(target.dimensions).items()}
 
 
 def read_connectors(brief: Json, entries: object, findings: list[Finding]) -> dict[str, Connector]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -20,12 +20,13 @@ from articad.kernels.kernel import PartKernel
 from articad.plan.amending import amended
 from articad.plan.brief import brief
 from articad.plan.expressions import parse
+from articad.plan.fields import lengths_in
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.plan.usage import CLEARANCE, SIZE
 from articad.processes import scratch
 
-__all__ = ["UNITS", "explained", "numbers_of"]
+__all__ = ["LONGEST", "UNITS", "explained", "longest_other", "numbers_of"]
 
 _OF_NUMBERS: Final = frozenset({"E_SCRIPT_ERROR", "E_NOT_ONE_SOLID", "E_EMPTY_SOLID", "E_INVALID_SOLID", "E_CONNECTOR_DRIFT"})
 _OF_SCRIPTS: Final = ("KeyError", "NameError", "SyntaxError", "ImportError", "AttributeError", "ModuleNotFoundError", "IndentationError")
@@ -33,7 +34,8 @@ UNITS: Final = {1000.0: "metres", 25.4: "inches"}
 """Units that are mistaken for millimetres, by their length [mm]."""
 _TRIALS: Final = 24  # builds of one failure
 _TOLD: Final = 4  # numbers of a hint
-_LONGEST: Final = 5.0  # a corrected length over the longest other one of its part
+LONGEST: Final = 5.0
+"""A corrected length over the longest other one of its part, at most."""
 
 
 class _Slip(NamedTuple):
@@ -117,7 +119,7 @@ def _slips(resolved: ResolvedPlan, name: str, *, signs_only: bool, only_odd: boo
     With `only_odd`, the shortest one alone may be too short, and the longest too long.
     """
     part = resolved.parts[name]
-    lengths = {key: float(value) for key, value in part.dimensions.items() if not key.endswith(("_deg", "_count"))}
+    lengths = lengths_in(part.dimensions)
     numbers = {address: number for address, number in numbers_of(resolved, name, lengths).items() if not CLEARANCE.search(address)}
     for address, (value, driven) in numbers.items():
         if value < 0.0 or (signs_only and not SIZE.search(address.removesuffix(".value"))):
@@ -126,13 +128,18 @@ def _slips(resolved: ResolvedPlan, name: str, *, signs_only: bool, only_odd: boo
         return
     ascending = sorted(numbers.items(), key=lambda item: abs(item[1][0]))
     for address, (value, driven) in ascending:
-        longest = max((abs(length) for key, length in lengths.items() if key not in driven), default=0.0)
+        longest = longest_other(lengths, driven)
         is_suspect = not only_odd or abs(value) == abs(ascending[0][1][0])
         for factor, unit in UNITS.items():
-            if is_suspect and 0.0 < abs(value) * factor <= _LONGEST * longest:
+            if is_suspect and 0.0 < abs(value) * factor <= LONGEST * longest:
                 yield _Slip(address, value, value * factor, f"were {unit} given?", driven)
             if abs(value) > longest > 0.0 and unit == "metres":
                 yield _Slip(address, value, value / factor, "were micrometres given?", driven)
+
+
+def longest_other(lengths: Mapping[str, float], driven: Collection[str]) -> float:
+    """Return the longest of a part's lengths that do not follow from a number [mm]; 0 if there is none."""
+    return max((abs(length) for name, length in lengths.items() if name not in driven), default=0.0)
 
 
 def numbers_of(resolved: ResolvedPlan, name: str, lengths: Mapping[str, float]) -> dict[str, tuple[float, frozenset[str]]]:

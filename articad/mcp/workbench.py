@@ -19,9 +19,9 @@ from articad.errors import ReadError
 from articad.files import RECORD_BYTES, ROOT_VARIABLE, is_file, read_file
 from articad.plan.amending import amended
 from articad.plan.reading import MOST_LEVELS, is_nested_deeper
-from articad.plan.short import expanded, is_short, scripted
+from articad.plan.short import expanded, functions_of, is_short
 from articad.plan.short_texts import opened
-from articad.plan.signatures import COMMON, functions_beside
+from articad.plan.signatures import COMMON
 from articad.processes import launcher, scratch
 from articad.runs.run import write_atomically
 from articad.texts import SPOILED, spoiled
@@ -138,8 +138,7 @@ class Workbench:
         return document
 
     def _expanded(self, name: str, document: dict[str, Any]) -> dict[str, Any]:
-        functions = functions_beside(self.design(name) / "plan.json", scripted(document)) if is_short(document) else None
-        plan: dict[str, Any] = expanded(document, functions)
+        plan: dict[str, Any] = expanded(document, functions_of(document, self.design(name) / "plan.json"))
         for key in ("parameters", "parts", "joints"):
             rows = plan.get(key, [])
             if not isinstance(rows, list) or not all(isinstance(row, dict) and isinstance(row.get("name"), str) for row in rows):

@@ -21,8 +21,7 @@ from articad.findings import Finding, Findings
 from articad.plan import reading
 from articad.plan.check import check_plan
 from articad.plan.schema import PLAN_FILE, AssemblyPlan
-from articad.plan.short import expanded, is_short, scripted
-from articad.plan.signatures import functions_beside
+from articad.plan.short import expanded, functions_of
 
 __all__ = ["further_findings"]
 
@@ -58,7 +57,7 @@ def further_findings(path: Path, found: Findings) -> Findings:
         return found
     if not isinstance(document, dict):
         return found
-    mended = _Mended(expanded(document, functions_beside(file, scripted(document)) if is_short(document) else None))
+    mended = _Mended(expanded(document, functions_of(document, file)))
     plan = mended.plan()
     if plan is None:
         return found

@@ -9,6 +9,7 @@ from __future__ import annotations
 import keyword
 import math
 import re
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, WithJsonSchema
@@ -32,6 +33,11 @@ class PlanObject(BaseModel):
     """Base of every object in a plan: frozen, and without unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_by_name=True, validate_by_alias=True)
+
+
+def lengths_in(dimensions: Mapping[str, float]) -> dict[str, float]:
+    """Return the dimensions that are lengths [mm]: all but angles, `_deg`, and counts, `_count`."""
+    return {name: float(value) for name, value in dimensions.items() if not name.endswith(("_deg", "_count"))}
 
 
 def is_name(text: str) -> bool:

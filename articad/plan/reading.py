@@ -18,8 +18,8 @@ from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.plan.fields import NAME_RULE, PlanObject, is_name
 from articad.plan.joint_forms import JOINT_TYPES, JointForm
-from articad.plan.short import expanded, is_short, joints_with_a_place, scripted
-from articad.plan.signatures import Functions, functions_beside
+from articad.plan.short import expanded, functions_of, is_short, joints_with_a_place
+from articad.plan.signatures import Functions
 from articad.texts import escaped
 
 F = TypeVar("F", bound=PlanObject)
@@ -89,7 +89,7 @@ def loads(form: type[F], text: str | bytes, file: Path | None = None) -> F:
         problem = f"This plan is nested deeper than {MOST_LEVELS} levels."
         raise _refused([_finding("E_SCHEMA", "plan", problem, "Give one JSON object in UTF-8.")])
     if not repeated:
-        return from_json(form, document, functions_beside(file, scripted(document)) if file and is_short(document) else None)
+        return from_json(form, document, functions_of(document, file) if file else None)
     twice = [_finding("E_SCHEMA", "plan", f"The key {key!r} occurs twice in one object.", "Remove one of them.") for key in repeated]
     try:
         from_json(form, document)

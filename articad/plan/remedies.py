@@ -27,7 +27,7 @@ from articad.plan.amending import amended
 from articad.plan.check import admitted, check_plan
 from articad.plan.draft import Draft
 from articad.plan.rest import identity_or
-from articad.plan.schema import AssemblyPlan, PartSpec, Pose
+from articad.plan.schema import TURNING_KINDS, AssemblyPlan, PartSpec, Pose
 
 __all__ = ["Changes", "advised", "digits", "of_couplings", "offered", "remedies", "turned", "with_other_sign"]
 
@@ -43,13 +43,6 @@ _TRIALS: Final = 160  # checks of a plan with findings
 _OFFERED: Final = 3  # changes that a hint states
 _LEAST_MM: Final = 0.01  # as far as connectors may be apart
 _DECIMALS: Final = 4  # of mm in a change; axes get two more
-_MOVING: Final = {
-    "hinge_axis": "revolute",
-    "shaft_axis": "revolute",
-    "bore_axis": "revolute",
-    "gear_axis": "revolute",
-}
-"""Types of joints that suit a kind of connector without limits."""
 _LIMITED: Final[Mapping[str, Json]] = {
     "ball_centre": {"type": "ball", "cone_deg": 20},
     "slide_axis": {"type": "slider", "travel_mm": [0, 100]},
@@ -264,9 +257,8 @@ def _forms(kind: str) -> Iterator[Json]:
     """Yield joints that suit a kind of connector, without limits where they need none."""
     if kind in _LIMITED:
         yield dict(_LIMITED[kind])
-    moving = _MOVING.get(kind)
-    if moving is not None:
-        yield {"type": moving} | ({"angle_deg": "endless"} if moving == "revolute" else {})
+    if kind in TURNING_KINDS:
+        yield {"type": "revolute", "angle_deg": "endless"}
     yield {"type": "fixed"}
 
 

@@ -18,12 +18,11 @@ from articad.findings import Finding
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.derive import DraftPart
 from articad.plan.draft import Draft
-from articad.plan.schema import DerivedJoint, PartSpec, Pose
+from articad.plan.schema import TURNING_KINDS, DerivedJoint, PartSpec, Pose
 
 OFFSET_MM = 0.01  # covers the rounding of numbers in plans, and is far below any fit
 ANGLE_DEG = 0.05  # 0.9 mm at one metre: axes rounded to four digits pass
 _TURN_FIELD = {JointType.REVOLUTE: "rest_deg", JointType.CYLINDRICAL: "rest_deg"}
-_TURNING_KINDS = {"hinge_axis", "shaft_axis", "bore_axis", "gear_axis"}
 _SLIDE_FIELD = {JointType.SLIDER: "rest_mm", JointType.CYLINDRICAL: "rest_mm"}
 _DECIMALS = 4  # of mm and degrees in hints: a hundredth of the tolerances
 _AXIS_DECIMALS = 6  # of unit axes in hints: 0.0001°
@@ -176,7 +175,7 @@ class _Mismatch:
         ends = ((self.joint.parent, self.joint.parent_connector), (self.joint.child, self.joint.child_connector))
         kinds = {spec.kind for part, name in ends for spec in self.draft.parts[part].connector_specs if spec.name == name}
         stated = any(form.name == self.joint.name and not isinstance(form, DerivedJoint) for form in self.draft.plan.joints)
-        if self.joint.type is not JointType.FIXED or kinds.isdisjoint(_TURNING_KINDS) or not stated:
+        if self.joint.type is not JointType.FIXED or kinds.isdisjoint(TURNING_KINDS) or not stated:
             return ""
         where, rest = f"joints.{self.joint.name}", -roll if self.joint.mate is Mate.OPPOSED else roll
         turning = {f"{where}.type": "revolute", f"{where}.angle_deg": "endless", f"{where}.rest_deg": float(_number(rest))}

@@ -6,7 +6,7 @@ Reading a plan checks only its form. `articad.plan.resolve` computes its numbers
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import Discriminator, Field, Tag
 
@@ -42,6 +42,9 @@ KernelName = Literal["build123d", "freecad"]
 ConnectorKind = Literal[
     "hinge_axis", "slide_axis", "shaft_axis", "bore_axis", "ball_centre", "mount_face", "gear_axis", "thread_axis", "frame"
 ]
+
+TURNING_KINDS: Final = ("hinge_axis", "shaft_axis", "bore_axis", "gear_axis")
+"""Kinds of connectors about whose axis parts turn."""
 
 
 class Parameter(PlanObject):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import Any, Final
 
 from articad.aliases import Json
@@ -15,7 +16,7 @@ from articad.plan import short_texts
 from articad.plan.short_copies import add_mirror_images, alike
 from articad.plan.short_joints import Joints
 from articad.plan.short_texts import by_name, frame, objects
-from articad.plan.signatures import Functions, with_arguments
+from articad.plan.signatures import Functions, functions_beside, with_arguments
 
 SHORT: Final = "articad.short/1"
 _LONG: Final = "articad.plan/1"
@@ -76,10 +77,17 @@ def expanded(document: Any, functions: Functions | None = None) -> Any:
     return plan
 
 
-def scripted(document: Any) -> list[str]:
-    """Return the names of the parts of a document in the short form that a script may build."""
-    parts = _listed(document.get("parts"), _part) if is_short(document) else []
-    return [name for name, part in by_name(parts).items() if "derive" not in part]
+def functions_of(document: Any, plan: Path) -> Functions | None:
+    """Return the functions of scripts that build the parts of a document in the short form; None for any other document.
+
+    Args:
+        document: A JSON document.
+        plan: Its file, beside which the scripts are.
+    """
+    if not is_short(document):
+        return None
+    parts = by_name(_listed(document.get("parts"), _part))
+    return functions_beside(plan, [name for name, part in parts.items() if "derive" not in part])
 
 
 def joints_with_a_place(document: Any) -> list[str]:
@@ -166,4 +174,4 @@ def _declare_materials(plan: Json) -> None:
             declared.append({"name": name, "density_kg_m3": density, "color": color})
 
 
-__all__ = ["MATERIALS", "SHORT", "expanded", "is_short", "joints_with_a_place", "scripted"]
+__all__ = ["MATERIALS", "SHORT", "expanded", "functions_of", "is_short", "joints_with_a_place"]

@@ -91,9 +91,9 @@ def place(text: str) -> list[Any] | None:
 def joint(text: str) -> Json:
     """Return the object that a joint's text stands for."""
     first, *clauses = split(text, ";")
-    kind, *names = first.split()[:1] or [""], *first.split()[1:]
-    stated: Json = dict(zip(("parent", "child", "by"), [*names[:2], " ".join(names[2:])], strict=False))
-    stated = {"type": kind[0]} | {key: name for key, name in stated.items() if name}
+    kind, *names = first.split() or [""]
+    ends = zip(("parent", "child", "by"), [*names[:2], " ".join(names[2:])], strict=False)
+    stated: Json = {"type": kind} | {key: name for key, name in ends if name}
     if stated["type"] == "like" and names:
         stated = {"like": names[0]} | dict(zip(("parent", "child", "by"), names[1:], strict=False))
     for key, told in _clauses(clauses):

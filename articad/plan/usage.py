@@ -14,9 +14,10 @@ from articad.findings import Finding
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.derive import JointLine
 from articad.plan.draft import Draft
+from articad.plan.fields import lengths_in
 from articad.plan.motions import AXES
 from articad.plan.rest import OFFSET_MM
-from articad.plan.schema import DerivedJoint
+from articad.plan.schema import TURNING_KINDS, DerivedJoint
 
 SMALLEST_MM = 0.5  # a smaller assembly is in metres or inches
 LARGEST_MM = 1e6  # a kilometre
@@ -26,7 +27,7 @@ LONGEST_SHARE = 50.0  # the longest dimension of a plan over the next shorter on
 _FLAT = 0.4  # an extent of connectors over the longest one: a shorter one may be the thickness of their part
 LIGHTEST, HEAVIEST = 10.0, 23000.0  # kg/m³: foam and osmium
 _SUITABLE = {  # a type that is not listed accepts any kind: a pin, a hub or a bracket is fixed on an axis as well as on a face
-    JointType.REVOLUTE: ("hinge_axis", "shaft_axis", "bore_axis", "gear_axis"),
+    JointType.REVOLUTE: TURNING_KINDS,
     JointType.SLIDER: ("slide_axis", "shaft_axis", "bore_axis"),
     JointType.CYLINDRICAL: ("shaft_axis", "bore_axis", "slide_axis"),
     JointType.SCREW: ("thread_axis", "shaft_axis", "bore_axis"),
@@ -289,8 +290,8 @@ def _dimensions(draft: Draft) -> list[Finding]:
     lengths = [
         (abs(value), part, name)
         for part, dimensions in draft.dimensions.items()
-        for name, value in dimensions.items()
-        if not name.endswith(("_deg", "_count")) and math.isfinite(value)
+        for name, value in lengths_in(dimensions).items()
+        if math.isfinite(value)
     ]
     found = [
         _negative(part, name, value)

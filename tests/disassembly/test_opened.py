@@ -192,7 +192,7 @@ def test_only_what_lacks_a_loop_is_opened() -> None:
     rest = remaining(mechanism, ("base", "crank", "rod", "slide"), "base", "crank")
     assert rest is not None
     assert [driver.joint for driver in rest.drivers] == ["crank"]
-    assert remaining(mechanism, ("base", "rod"), "base") is None  # joints do not connect them
+    assert remaining(mechanism, ("base", "rod"), "base", "crank") is None  # joints do not connect them
 
 
 def test_the_manual_says_and_shows_how_the_rest_is_turned() -> None:
