@@ -31,6 +31,7 @@ FIRST_WAIT_S: Final = 1.0  # doubled after each try: 31 s in all
 LONGEST_WAIT_S: Final = 60.0
 _RETRIED_STATUS: Final = frozenset({408, 409, 425, 429, 500, 502, 503, 504, 529})
 _RETRIED_KINDS: Final = frozenset({"late", "unreachable", "empty", "lost"})
+_FINAL_KINDS: Final = frozenset({"key", "elsewhere"})  # whatever status they have
 _LOOKING: Final = frozenset({"look", "observe"})  # roles that make no sense without images
 _LONGEST_ANSWER: Final = 4_000_000  # characters; the plan of a thousand parts has a tenth of that
 _BATCH: Final = 64  # texts that are embedded at once; providers accept about a hundred
@@ -181,7 +182,7 @@ class LiteLLM:
             failure = answer.get("error")
             if failure is None or failure["kind"] == "form":
                 return answer
-            is_passing = failure["kind"] != "key" and (failure["kind"] in _RETRIED_KINDS or failure["status"] in _RETRIED_STATUS)
+            is_passing = failure["kind"] not in _FINAL_KINDS and (failure["kind"] in _RETRIED_KINDS or failure["status"] in _RETRIED_STATUS)
             pause = _pause(failure, number) if is_passing and number < self._tries else 0.0
             meter.require(pause)  # a call that was ended by the budget is reported as such
             if not is_passing or number == self._tries:
@@ -281,6 +282,8 @@ class LiteLLM:
             what = "gave an empty answer"
         elif kind == "redirect":
             what = "sent the request on to another address, which is not followed"
+        elif kind == "elsewhere":
+            what = "is asked at another address than --api-base, which its provider ignores"
         elif kind == "body":
             what = "gave an unreadable answer"
         elif kind == "memory":

@@ -4,11 +4,12 @@ A call is one connected socket, passed over stdin. The forked process
 - reads one JSON object to the end of the stream: `do`, `seconds`, `environment`, and the arguments of the task;
 - is killed by the kernel when `seconds` have passed (`ITIMER_REAL`: a monotonic clock), whatever it waits for;
 - may allocate `MEMORY` bytes in addition to what the import and the request took;
-- sends one request over HTTP, follows no redirect, and reads at most `LARGEST_BODY` bytes, decompressed, in small pieces;
+- asks no other host over HTTP than that of a stated `api_base`, and none to describe models; the libraries would look up models and tokenizers elsewhere;
+- follows no redirect, and reads at most `LARGEST_BODY` bytes, decompressed, in small pieces;
 - answers with one JSON object, or dies, in which case its socket ends without an answer.
 
 Tasks: `describe` models, `complete` a conversation, `embed` texts. The answer to a call that fails is `{"error": {...}}` with a `kind`:
-`key`, `form`, `late`, `unreachable`, `empty`, `redirect`, `body`, `memory` or `other`.
+`key`, `form`, `late`, `unreachable`, `empty`, `redirect`, `elsewhere`, `body`, `memory` or `other`.
 """
 
 from __future__ import annotations
@@ -44,6 +45,7 @@ _SETTINGS: Final = {
     "LITELLM_LOCAL_ANTHROPIC_BETA_HEADERS": "True",  # otherwise a call of Bedrock fetches a list of headers
     "LITELLM_LOG": "ERROR",  # otherwise requests are printed
     "LITELLM_MODE": "PRODUCTION",  # otherwise the import loads the nearest .env, which may name another host for the user's key
+    "HF_HUB_OFFLINE": "1",  # otherwise tokenizers are fetched to count the tokens of models with certain names
 }
 _OF_A_PROVIDER: Final = ("LITELLM_PROXY_API_BASE", "LITELLM_PROXY_API_KEY")  # a user's own endpoint, and its key
 _PIECE: Final = 65536  # bytes that are decompressed at once
@@ -54,6 +56,10 @@ _GZIP_OR_ZLIB: Final = 32 + zlib.MAX_WBITS
 
 class BodyError(Exception):
     """A body that is not read to its end."""
+
+
+class ElsewhereError(Exception):
+    """A request to another host than the one that is stated."""
 
 
 class EmptyAnswerError(ValueError):
@@ -141,6 +147,7 @@ def _limit_memory(more: int) -> None:
 
 def _answer(litellm: Any, order: Json) -> Json:
     tasks: dict[str, Callable[[Any, Json], Json]] = {"describe": _describe, "complete": _complete, "embed": _embed}
+    _keep_to("" if order["do"] == "describe" else order["arguments"].get("api_base"))
     try:
         return tasks[order["do"]](litellm, order)
     except MemoryError:
@@ -207,9 +214,9 @@ def _failure(litellm: Any, error: Exception) -> Json:
     status = getattr(error, "status_code", None)
     status = status if isinstance(status, int) else None
     causes = list(_causes(error))
-    body = next((cause for cause in causes if isinstance(cause, BodyError)), None)
-    if body is not None:
-        kind, error = "body", body
+    own = next((cause for cause in causes if isinstance(cause, (BodyError, ElsewhereError))), None)
+    if own is not None:
+        kind, error = "elsewhere" if isinstance(own, ElsewhereError) else "body", own
     elif isinstance(error, (litellm.AuthenticationError, litellm.PermissionDeniedError)) or status in (401, 403):
         kind = "key"
     elif any(isinstance(cause, RecursionError) for cause in causes):
@@ -276,6 +283,22 @@ def _bound_transport() -> None:
 
     httpx.HTTPTransport.handle_request = bounded  # type: ignore[method-assign]
     httpx.Response.has_redirect_location = property(lambda _response: False)  # type: ignore[assignment, method-assign]
+
+
+def _keep_to(address: str | None) -> None:
+    """Refuse requests over HTTP to any other scheme, host and port than those of an address; all if it is empty, none if it is None."""
+    import httpx  # noqa: PLC0415 - with litellm
+
+    if address is None:
+        return
+    stated, send = httpx.URL(address), httpx.HTTPTransport.handle_request
+
+    def kept(self: Any, request: Any) -> Any:
+        if not address or any(getattr(request.url, name) != getattr(stated, name) for name in ("scheme", "host", "port")):
+            raise ElsewhereError(f"it would ask {request.url.scheme}://{request.url.netloc.decode()}, not the stated address")
+        return send(self, request)
+
+    httpx.HTTPTransport.handle_request = kept  # type: ignore[method-assign]
 
 
 _OF_THE_BODY: Final = frozenset({b"content-encoding", b"content-length", b"transfer-encoding"})

@@ -198,3 +198,42 @@ print(fetched)
 """
     done = subprocess.run([sys.executable, "-c", code, repr(LOUD)], env=os.environ | LOUD, capture_output=True, text=True, check=False)
     assert done.stdout.strip() == "[]", done.stderr
+
+
+@pytest.mark.slow
+def test_no_provider_asks_another_host_than_the_stated_one() -> None:
+    """All that LiteLLM knows, with models that it does not know: it would look some up at the ports of Ollama and Lemonade, with the key."""
+    code = """
+import json, os, socket
+from articad.agents import provider
+litellm = provider.load()
+import httpx
+OWN = "127.0.0.9"
+elsewhere = set()
+
+def spied(real, host_of):
+    def call(*words, **more):
+        host = host_of(*words)
+        if host not in (None, OWN):
+            elsewhere.add(f"{doing} {host}")
+            raise socket.gaierror("nobody is reached in this test")
+        return real(*words, **more)
+    return call
+
+socket.getaddrinfo = spied(socket.getaddrinfo, lambda host, *_: host)
+socket.socket.connect = spied(socket.socket.connect, lambda _, address: address[0] if isinstance(address, tuple) else None)
+bounded = httpx.HTTPTransport.handle_request
+names = [getattr(name, "value", name) for name in litellm.provider_list]
+assert len(names) > 100
+os.environ |= {"AWS_ACCESS_KEY_ID": "none", "AWS_SECRET_ACCESS_KEY": "none"}  # else it looks for a machine's own, which is a login
+os.environ |= {f"{name.upper()}_API_KEY": "sk-none" for name in names}
+for model in (f"{name}/{rest}" for name in names for rest in ("some-model", "meta/llama-3-8b")):
+    words = {"model": model, "messages": [{"role": "user", "content": "why?"}], "api_base": f"http://{OWN}:9/v1"}
+    for order in ({"do": "describe", "models": [model]}, {"do": "complete", "seconds": 5, "is_local": True, "arguments": words}):
+        doing = f"{order['do']} {model}"
+        httpx.HTTPTransport.handle_request = bounded  # as in the process of each call
+        provider._answer(litellm, order)
+print(json.dumps(sorted(elsewhere)))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stdout.strip().splitlines()[-1:] == ["[]"], done.stdout + done.stderr[-3000:]
