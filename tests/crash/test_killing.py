@@ -65,7 +65,7 @@ def test_killed_with_processes_of_its_own_it_resumes_and_ends_equal(name: str, r
         work = (lambda folder: works.live(folder, address)) if name == "live" else works.batch
         took, calls = killing.undisturbed(work, tmp_path / "whole")
         expected = works.files(tmp_path / "whole")
-        killed = []
+        killed = list[bool]()
         while not any(killed):  # the first time took longer than the others, if the machine was busy then
             points = killing.points(3, took, calls, seed=3) if name == "live" else killing.timed(2, took, seed=3)
             killed = [killing.resumed(work, point, tmp_path, lambda folder: _same(folder, expected)) for point in points]
