@@ -9,7 +9,6 @@ import os
 import shutil
 import sys
 import tempfile
-import time
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -30,7 +29,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Solid
 from articad.kernels import sandbox as isolation
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
-from articad.kernels.dimensions import failed_attempt, fingerprint, probed
+from articad.kernels.dimensions import WAITING, failed_attempt, fingerprint, is_out_of_time, probed
 from articad.kernels.failures import poisoned, script_failure, unconfined
 from articad.kernels.kernel import BuildCache, BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, number, numbers, read_bytes, read_lines, read_mesh
@@ -80,7 +79,7 @@ class Build123dKernel:
             sandbox: `strict` refuses to run scripts if neither Landlock nor bubblewrap works, `weak` does not; by default
                 `$ARTICAD_SANDBOX`, else strict.
             timeout: Wall clock of a script [s].
-            probe_timeout: Wall clock of its dimension probe [s].
+            probe_timeout: Processor time of its dimension probe [s]; the wall clock may be `dimensions.WAITING` times as long.
             memory: Address space of a script [bytes].
             layers: Layers of isolation to apply, if available; all by default. Fewer serve to measure the effect of each.
         """
@@ -154,16 +153,12 @@ class Build123dKernel:
         request = {"script": source, "part": dict(brief), "deflection_mm": deflection, "angle_deg": ANGLE_DEG}
         with self.job_folder() as job:
             try:
-                started = time.monotonic()
                 ran = self._run("script", job, request, {"shape": "shape.bin"}, limits)
-                own = time.monotonic() - started
                 if not ran.report or ran.report[0].get("ok") is not True:
                     error: KernelError = script_failure(part, source, ran.report, ran.outcome, ran.crash, limits)
                     error.partial = self._pieces(job, deflection)
                     raise error
-                return self._judged(
-                    job, brief, ran, folder or self._new_folder(), deflection, inspect, probe=source if probe else None, own=own
-                )
+                return self._judged(job, brief, ran, folder or self._new_folder(), deflection, inspect, probe=source if probe else None)
             except PoisonedError as poison:
                 raise poisoned(part, source, str(poison)) from poison
 
@@ -329,7 +324,6 @@ class Build123dKernel:
         inspect: Inspect | None,
         *,
         probe: str | None,
-        own: float,
     ) -> BuiltPart:
         """Measure what a script left, probe its dimensions, and check it against the contract.
 
@@ -341,7 +335,6 @@ class Build123dKernel:
             deflection: Deflection of the mesh [mm].
             inspect: Further checks of connectors and bounding box.
             probe: The script, to be run with each dimension changed; None omits the probe.
-            own: Wall clock of the script [s].
 
         Raises:
             ContractError: With every breach at once.
@@ -356,7 +349,7 @@ class Build123dKernel:
         if inspect is not None and "bbox_mm" in shape:
             found += inspect(connectors, numbers(shape["bbox_mm"], 2, 3))
         if probe is not None and shape.get("solids") == 1 and shape.get("valid") is True:
-            outcomes = self._probed(probe, brief, fingerprint(shape, said["connectors"]), own)
+            outcomes = self._probed(probe, brief, fingerprint(shape, said["connectors"]), ran.outcome.cpu)
             found += probe_findings(brief, outcomes, ended=True, crashed="", script=probe)
         findings = Findings(found)
         if not findings.ok:
@@ -369,23 +362,23 @@ class Build123dKernel:
     def _probed(self, script: str, brief: Mapping[str, Any], before: list[float], own: float) -> list[Json]:
         """Build the part with each dimension changed; return an outcome for each that was done in time."""
 
-        def attempt(dimensions: Json, seconds: float) -> list[float] | Json | None:
-            limits = replace(self.limits, seconds=seconds, probe_seconds=0.0)
+        def attempt(dimensions: Json, seconds: float) -> tuple[list[float] | Json | None, float]:
+            limits = replace(self.limits, seconds=WAITING * seconds, probe_seconds=0.0, cpu_seconds=seconds)
             with self.job_folder() as job:
                 ran = self._run(
                     "script", job, {"script": script, "part": {**brief, "dimensions": dimensions}}, {"shape": "shape.bin"}, limits
                 )
                 said = ran.report[0] if ran.report else {}
                 if said.get("ok") is not True:
-                    return failed_attempt(said, ends_by(ran.outcome), late=ran.outcome.late)
+                    return failed_attempt(said, ends_by(ran.outcome), late=ran.outcome.late), ran.outcome.cpu
                 judged = self._run("judge", job, {}, {"shape": "shape.bin"}, limits)
-                shape = judged.report[0] if judged.report else {}
+                shape, used = judged.report[0] if judged.report else {}, ran.outcome.cpu + judged.outcome.cpu
                 if shape.get("ok") is not True:
-                    return {
-                        "outcome": "broken",
-                        "error": {"message": f"it gives {shape.get('solids', 'no')} solids, not one that is valid"},
-                    }
-                return fingerprint(shape, said.get("connectors", {}))
+                    if "solids" not in shape and is_out_of_time(ends_by(judged.outcome), late=judged.outcome.late):
+                        return None, used
+                    message = f"it gives {shape.get('solids', 'no')} solids, not one that is valid"
+                    return {"outcome": "broken", "error": {"message": message}}, used
+                return fingerprint(shape, said.get("connectors", {})), used
 
         return list(probed(brief["dimensions"], before, attempt, seconds=self.limits.probe_seconds, own=own))
 

@@ -9,7 +9,7 @@ import os
 import shutil
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from articad.errors import KernelError
@@ -55,8 +55,10 @@ class BuildCache:
         return None
 
     @contextlib.contextmanager
-    def writing(self, digest: str) -> Iterator[Path]:
+    def writing(self, digest: str | Callable[[], str]) -> Iterator[Path]:
         """Yield a new folder to write to; if the block ends without an error, it becomes the folder of the digest.
+
+        A digest that depends on what is written is given as a function, which is called at the end of the block.
 
         If another process was first, its folder stays. After an error nothing is left.
 
@@ -74,11 +76,12 @@ class BuildCache:
             seal = {path.name: _hash(path) for path in sorted(folder.iterdir())}
             (folder / _SEAL).write_text(json.dumps(seal, sort_keys=True))
             folder.chmod(0o755)
+            name = digest if isinstance(digest, str) else digest()
             try:
-                folder.rename(self.root / digest)
+                folder.rename(self.root / name)
             except OSError:
-                if self.get(digest) is None:  # the damaged folder that was in the way has been removed
-                    folder.rename(self.root / digest)
+                if self.get(name) is None:  # the damaged folder that was in the way has been removed
+                    folder.rename(self.root / name)
         except OSError as error:
             raise self._unwritable(error) from error
         finally:

@@ -1,6 +1,7 @@
 """The dimension probe: each dimension is changed, and the script runs again in a process of its own, independent of other runs.
 
-The changed part is measured by one more process, in which no script ran.
+The changed part is measured by one more process, in which no script ran. The probe is bounded by the processor time of these processes, so
+that its result does not depend on what else the machine does.
 """
 
 from __future__ import annotations
@@ -11,18 +12,22 @@ from typing import Any, Final
 
 from articad.kernels.results import number, numbers
 
-__all__ = ["failed_attempt", "fingerprint", "probed"]
+__all__ = ["WAITING", "failed_attempt", "fingerprint", "is_out_of_time", "probed"]
 
 STEP: Final = 0.02  # the contract's 2 %
 ZERO_MM, ZERO_DEG = 0.1, 1.0  # steps for a dimension that is zero
 LEAST_SECONDS, PATIENCE = 3.0, 10.0  # a dimension changed by 2 % does not make a script ten times as slow
+WAITING: Final = 5.0  # wall clock over processor time: a process that needs more is stopped, because it waits for something
 SAME: Final = 1e-9  # relative change of a number that is rounding
 _ORDER: Final = ("changed", "unused", "refused", "broken", "crashed")
 
 Json = dict[str, Any]
 Fingerprint = list[float]
-Attempt = Callable[[Json, float], Fingerprint | Json | None]
-"""Builds a part with other dimensions within some seconds: its fingerprint, why it fails (an outcome), or None if time ran out."""
+Attempt = Callable[[Json, float], tuple[Fingerprint | Json | None, float]]
+"""Builds a part with other dimensions within some processor time [s].
+
+Returns its fingerprint, why it fails (an outcome), or None if time ran out; and the processor time that was used [s].
+"""
 
 
 def probed(dimensions: Mapping[str, float], before: Fingerprint, attempt: Attempt, *, seconds: float, own: float) -> Iterator[Json]:
@@ -36,16 +41,18 @@ def probed(dimensions: Mapping[str, float], before: Fingerprint, attempt: Attemp
         dimensions: Dimensions of the part.
         before: The fingerprint of the unchanged part.
         attempt: Builds it with other dimensions.
-        seconds: Wall clock for all dimensions.
-        own: Wall clock that the part itself took [s].
+        seconds: Processor time for all dimensions; `WAITING` times as much wall clock ends the probe, too.
+        own: Processor time that the part itself took [s].
     """
-    until = time.monotonic() + seconds
+    until = time.monotonic() + WAITING * seconds
     patience = max(LEAST_SECONDS, PATIENCE * own)
     for name, value in dimensions.items():
         outcomes: list[Json] = []
         for moved in _moves(name, value):
-            left = until - time.monotonic()
-            result = attempt({**dimensions, name: moved}, min(left, patience)) if left > 0 else None
+            if seconds <= 0.0 or time.monotonic() > until:
+                return
+            result, used = attempt({**dimensions, name: moved}, min(seconds, patience))
+            seconds -= used
             if result is None:
                 outcomes.clear()
                 break
@@ -94,9 +101,19 @@ def failed_attempt(said: Json, signal: str, *, late: bool) -> Json | None:
         return {"outcome": "broken", "error": {"message": "; ".join(map(str, said["problems"][:20]))}}
     if isinstance(error := said.get("error"), dict):
         return {"outcome": "refused" if error.get("refused") is True else "broken", "error": error}
-    if late or signal in {"SIGALRM", "SIGKILL", "SIGXCPU"}:
+    if is_out_of_time(signal, late=late):
         return None
     return {"outcome": "crashed", "signal": signal} if signal else {"outcome": "broken"}
+
+
+def is_out_of_time(signal: str, *, late: bool) -> bool:
+    """Return whether a process was stopped because its processor time or wall clock was used up.
+
+    Args:
+        signal: The signal that ended it, or empty.
+        late: Whether it was killed at its deadline.
+    """
+    return late or signal in {"SIGALRM", "SIGKILL", "SIGXCPU"}
 
 
 def _moves(name: str, value: float) -> Iterator[float]:

@@ -34,6 +34,7 @@ from articad.kernels import sandbox as isolation
 from articad.kernels.archive import Archive, BadArchiveError, packed
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
+from articad.kernels.dimensions import WAITING
 from articad.kernels.failures import poisoned, script_failure, scrubbed, unconfined
 from articad.kernels.freecad_file import rounded, settled, shortened
 from articad.kernels.freecad_install import FreeCAD, FreeCADEnded, FreeCADLimits
@@ -183,7 +184,7 @@ class FreeCADKernel(Build123dKernel):
             raise PoisonedError("connectors are missing")
         seconds = self.limits.probe_seconds if probe is not None else 0.0
         told = {"connectors": entries, "dimensions": brief["dimensions"], "seconds": seconds}
-        looked = self._inside("probe", job, told, (DOCUMENT,), ("shape.bin",), seconds + self.limits.seconds)
+        looked = self._inside("probe", job, told, (DOCUMENT,), ("shape.bin",), WAITING * seconds + self.limits.seconds)
         tree = looked.report[0] if looked.report else {}
         found = list(tree_findings(part, tree))
         if tree.get("ok") is not True:
@@ -199,7 +200,8 @@ class FreeCADKernel(Build123dKernel):
         if probe is not None and not found:
             outcomes = [line["probe"] for line in looked.report[1:] if isinstance(line.get("probe"), dict)]
             ended = any("probed" in line for line in looked.report)
-            found += probe_findings(brief, outcomes, ended=ended, crashed="" if ended else "SIGSEGV", script=probe)
+            crashed = "" if ended else "SIGKILL" if looked.ended.late else "SIGSEGV"
+            found += probe_findings(brief, outcomes, ended=ended, crashed=crashed, script=probe)
         findings = Findings(found)
         if not findings.ok:
             raise _breach(list(findings.errors), part)

@@ -27,7 +27,8 @@ from articad.plan.resolve import ResolvedPart, ResolvedPlan
 
 __all__ = ["BuildCache", "BuiltPart", "Inspect", "PartKernel", "build_part", "mirror_part", "realise"]
 
-_OF_PROBE = {"W_DIMENSION_UNUSED", "W_DIMENSION_REFUSED", "W_BUILD_UNCHECKED"}
+_HURRIED = "W_BUILD_UNCHECKED"  # of a build that was cut short by time
+_OF_PROBE = {"W_DIMENSION_UNUSED", "W_DIMENSION_REFUSED", _HURRIED}
 SEATED_MM, SEATED_RAD = 1e-7, 1e-10  # a smaller seat is rounding of numbers in a script; the files stay as they are
 
 Inspect = Callable[[Mapping[str, Connector], FloatArray], Findings]
@@ -131,7 +132,8 @@ def build_part(
 
     Its files are in the plan's frame: if the script put the connector to the tree parent elsewhere, the whole part is moved to match the
     plan. A script whose part follows all dimensions is not probed again for other numbers. One whose part does not is: a cut in the air for
-    one number may be a slot for another.
+    one number may be a slot for another. A part whose checks were cut short by time is kept under another digest and built again when it is
+    needed next.
 
     Args:
         resolved: The plan with its numbers.
@@ -154,7 +156,7 @@ def build_part(
         script_digest = _digest(brief_digest(resolved, name), script.hex(), kernel.name, kernel.version)
         probed = cache.get(f"{script_digest}.follows")
         try:
-            with cache.writing(digest) as empty:
+            with cache.writing(lambda: stored) as empty:
                 built = kernel.build(
                     script,
                     told,
@@ -163,13 +165,14 @@ def build_part(
                     probe=probed is None,
                     inspect=lambda connectors, bbox: drift_findings(target, told, connectors, bbox),
                 )
+                stored = f"{digest}.hurried" if _HURRIED in built.findings.codes else digest
         except KernelError as error:
             error.partial = _kept(cache, digest, error.partial)
             raise
         if probed is None and not any(finding.code in _OF_PROBE for finding in built.findings):
             with cache.writing(f"{script_digest}.follows") as empty:
                 (empty / "probed.json").write_text("{}")
-        folder = cache.root / digest
+        folder = cache.root / stored
     return _seated(target, BuiltPart.load(folder, cached=cached), kernel)
 
 

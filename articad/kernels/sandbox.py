@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import math
 import os
 import site
 import sys
@@ -55,15 +56,18 @@ class ScriptLimits:
 
     Attributes:
         seconds: Wall clock until its shape must be there.
-        probe_seconds: Wall clock for what follows: the dimension probe, or further checks of a shape that was measured.
+        probe_seconds: Wall clock for what follows, such as further checks of a shape that was measured; of the dimension probe, whose
+            processes are limited one by one, the processor time.
         memory: Address space [bytes], libraries (1 GiB) included.
         file_size: Largest size of each result [bytes].
+        cpu_seconds: Processor time, rounded up to whole seconds; None if the wall clock alone ends it.
     """
 
     seconds: float = 60.0
     probe_seconds: float = 30.0
     memory: int = 3 * 2**30
     file_size: int = 256 * 2**20
+    cpu_seconds: float | None = None
 
 
 def level() -> str:
@@ -230,6 +234,8 @@ def _limit_resources(limits: ScriptLimits) -> None:
 
     # Twice the wall clock on every processor is only reached by threads that survive the kill at the wall clock's limit.
     cpu = int(2 * (limits.seconds + limits.probe_seconds) * (os.cpu_count() or 1)) + 1
+    if limits.cpu_seconds is not None:
+        cpu = math.ceil(limits.cpu_seconds)
     for what, value in (
         (resource.RLIMIT_AS, limits.memory),
         (resource.RLIMIT_FSIZE, limits.file_size),

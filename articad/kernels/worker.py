@@ -142,6 +142,7 @@ class ZygoteServer:
             if job is not None:
                 os.close(job.report)
                 answer: Json = {"id": job.number, "status": status, "late": job.late, "peak": usage.ru_maxrss * 1024}
+                answer["cpu"] = usage.ru_utime + usage.ru_stime
                 answer["unconfined"] = _last_words(job.fault)
                 self._control.send(json.dumps(answer).encode())
 

@@ -46,6 +46,7 @@ class JobOutcome:
         signal: The signal that ended it, or 0.
         late: Whether the zygote killed it at its deadline.
         peak: Its largest memory [bytes].
+        cpu: Its processor time [s].
         refused: Why no process could be started; empty if one was.
         unconfined: Why the sandbox could not be set up, so that nothing was done; empty if it was.
     """
@@ -54,6 +55,7 @@ class JobOutcome:
     signal: int
     late: bool
     peak: int
+    cpu: float = 0.0
     refused: str = ""
     unconfined: str = ""
 
@@ -221,6 +223,7 @@ def _outcome(answer: dict[str, Any]) -> JobOutcome:
         os.WTERMSIG(status) if signaled else 0,
         late=bool(answer["late"]),
         peak=int(answer["peak"]),
+        cpu=float(answer["cpu"]),
         unconfined=str(answer.get("unconfined", "")),
     )
 

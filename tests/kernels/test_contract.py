@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis.strategies import floats, lists
 
 from articad.errors import BuildError, ContractError, KernelError
 from articad.findings import Finding, Findings
 from articad.kernels.build123d import Build123dKernel
+from articad.kernels.dimensions import probed
 from articad.kernels.results import read_mesh
 from tests.kernels.conftest import Build, frame
 
@@ -251,6 +256,46 @@ def test_a_probe_that_does_not_end_does_not_lose_the_part(build: Build) -> None:
 
     finding = only(found, "W_BUILD_UNCHECKED")
     assert "w" in finding.message
+
+
+WAITS = "import time\ntime.sleep(1.0)\nreturn Box(d['w'], d['h'], d['t']), {}"  # as on a busy machine: wall clock without processor time
+UNUSED = {"w": 10.0, "h": 5.0, "t": 5.0, "depth": 3.0}
+
+
+def test_a_probe_that_gets_no_processor_loses_no_dimension(build: Build, kernel: Build123dKernel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Five builds wait longer than the time of the probe, but use less of the processor."""
+    monkeypatch.setattr(kernel, "limits", replace(kernel.limits, probe_seconds=4.0))
+    found = build(WAITS, dimensions=UNUSED, probe=True).findings
+    assert [(one.code, one.where) for one in found] == [("W_DIMENSION_UNUSED", "parts.lug.dimensions.depth")]
+
+
+def test_a_probe_that_only_waits_ends(build: Build, kernel: Build123dKernel, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernel, "limits", replace(kernel.limits, probe_seconds=1.0))
+    started = time.monotonic()
+    found = build(
+        "while d['w'] != 10:\n    import time\n    time.sleep(1)\nreturn Box(d['w'], 5, 5), {}", dimensions={"w": 10.0}, probe=True
+    )
+    assert found.findings.codes == ("W_BUILD_UNCHECKED",)
+    assert time.monotonic() - started < 60.0  # five seconds of waiting
+
+
+@given(used=lists(floats(0.1, 3.0), min_size=1, max_size=6), waited=floats(0.0, 2.0))
+def test_a_probe_spends_processor_time_and_not_the_clock(used: list[float], waited: float) -> None:
+    """Each dimension without effect takes two builds; the budget is enough for all of them."""
+    now = [0.0]
+
+    def attempt(dimensions: dict[str, float], _seconds: float) -> tuple[list[float], float]:
+        spent = next(used[int(name)] for name, value in dimensions.items() if value != 1.0)
+        now[0] += spent * (1.0 + waited)
+        return [1.0], spent
+
+    numbers = {str(at): 1.0 for at in range(len(used))}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("articad.kernels.dimensions.time.monotonic", lambda: now[0])
+        outcomes = list(probed(numbers, [1.0], attempt, seconds=2 * sum(used) + 0.1, own=1.0))
+        few = list(probed(numbers, [1.0], attempt, seconds=2 * sum(used[:-1]) + used[-1] / 2, own=1.0))
+    assert [one["outcome"] for one in outcomes] == ["unused"] * len(used)
+    assert len(few) == len(used) - 1
 
 
 def test_a_part_that_breaks_its_contract_hands_back_its_solids(build: Build) -> None:

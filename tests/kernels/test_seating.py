@@ -214,6 +214,21 @@ def test_a_dimension_without_effect_at_one_number_may_have_one_at_another(kernel
         assert built(plan(width=width), capped, kernel, cache)[2].codes == codes
 
 
+def test_checks_that_time_cut_short_are_done_again(kernel: Build123dKernel, cache: BuildCache, monkeypatch: pytest.MonkeyPatch) -> None:
+    capped = script().replace(b"w = part.dimensions['width']", b"w = min(part.dimensions['width'], 60.0)")
+    with monkeypatch.context() as hurried:
+        hurried.setattr(kernel, "limits", replace(kernel.limits, probe_seconds=0.0))
+        first, again = (built(plan(width=90), capped, kernel, cache) for _ in range(2))
+    in_time = built(plan(width=90), capped, kernel, cache)
+    kept = built(plan(width=90), capped, kernel, cache)
+
+    assert [one[2].codes for one in (first, again)] == [("W_BUILD_UNCHECKED",)] * 2
+    assert [one[2].codes for one in (in_time, kept)] == [("W_DIMENSION_UNUSED",)] * 2
+    assert [one[0].cached for one in (first, again, in_time, kept)] == [False, False, False, True]
+    assert first[0].solid.mesh.digest == in_time[0].solid.mesh.digest
+    assert first[0].solid.brep.is_file()  # whoever holds the first part still has its files
+
+
 def test_a_failed_build_leaves_its_solids_in_the_cache_but_no_hit(kernel: Build123dKernel, cache: BuildCache) -> None:
     failing = script().replace(b"    hinge = seat", b"    raise ValueError('no')\n    hinge = seat")
 

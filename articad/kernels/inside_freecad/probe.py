@@ -44,7 +44,7 @@ def main(job: int, document: int, report: int, shape: int) -> None:
         _say(report, {"ok": False, "problem": problem})
         return
     _say(report, judged | {"connectors": _frames(opened, systems)})
-    until = time.monotonic() + told["seconds"]
+    until = time.process_time() + told["seconds"]  # so that the result does not depend on what else the machine does
     if told["seconds"] > 0:
         for outcome in _probe(opened, body, systems, told["dimensions"], until):
             _say(report, {"probe": outcome})
@@ -99,7 +99,7 @@ def _probe(document: Any, body: Any, systems: dict[str, str], dimensions: Json, 
     for name, value in dimensions.items():
         outcomes: list[Json] = []
         for moved in _moves(name, value):
-            if time.monotonic() > until:
+            if time.process_time() > until:
                 return
             setattr(values, f"d_{name}", float(moved))
             outcomes.append(_tried(document, body, systems, before))
