@@ -226,7 +226,7 @@ def test_checks_that_time_cut_short_are_done_again(kernel: Build123dKernel, cach
     assert [one[2].codes for one in (in_time, kept)] == [("W_DIMENSION_UNUSED",)] * 2
     assert [one[0].cached for one in (first, again, in_time, kept)] == [False, False, False, True]
     assert first[0].solid.mesh.digest == in_time[0].solid.mesh.digest
-    assert first[0].solid.brep.is_file()  # whoever holds the first part still has its files
+    assert (first[0].folder / "part.brep").is_file()  # whoever holds the first part still has its files
 
 
 def test_a_failed_build_leaves_its_solids_in_the_cache_but_no_hit(kernel: Build123dKernel, cache: BuildCache) -> None:
