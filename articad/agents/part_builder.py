@@ -11,8 +11,9 @@ from typing import Any, Final
 
 from articad.agents.finetuning import absorbed, notes
 from articad.agents.llm import LLM, Image, closed_port
-from articad.agents.part_writer import Attempt, PartWriter, failure_text
-from articad.agents.retrieval import Documentation, Memory
+from articad.agents.part_group import asked_together, grouped
+from articad.agents.part_writer import Answer, Attempt, PartWriter, failure_text
+from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory
 from articad.agents.rollback import Fate
 from articad.aliases import Progress
 from articad.assembly import DEFLECTION_MM, Assembly
@@ -22,6 +23,7 @@ from articad.findings.codes import CODES
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import RealisedPart, build_parts, build_source
 from articad.plan.brief import brief_digest
+from articad.plan.entry import specification
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
@@ -155,8 +157,13 @@ class PartBuilder:
         self.planned = planned
         self.fates = dict.fromkeys(gone, "removed")
         self.made = {name: made for name, made in self.made.items() if name in sources}
+        groups = grouped([name for name in sources if self._is_new(resolved[name], name)], self._options.get("together", 1))
+        steps = [f"parts/{names[0]}/{self._answers(names[0]) + 1}" for names in groups]  # before any part counts further answers
         with ThreadPoolExecutor(max_workers=min(CALLS_AT_ONCE, len(sources))) as pool:
-            futures = {name: pool.submit(self._make, resolved[name], name) for name in sources}
+            asked: dict[str, Future[dict[str, Answer]]] = {}
+            for names, step in zip(groups, steps, strict=True):
+                asked |= dict.fromkeys(names, pool.submit(self._ask_together, {name: resolved[name] for name in names}, step))
+            futures = {name: pool.submit(self._make, resolved[name], name, asked.get(name)) for name in sources}
         self.complaints = {}
         self.fates = {name: self.fates[name] for name in (*sources, *gone) if name in self.fates}
         _raise_failures(futures, len(sources))
@@ -194,10 +201,35 @@ class PartBuilder:
     def _built(self, resolved: ResolvedPlan) -> dict[str, RealisedPart]:
         return build_parts(resolved, self.scripts, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM, jobs=self.jobs)
 
-    def _make(self, resolved: ResolvedPlan, name: str) -> None:
+    def _is_new(self, resolved: ResolvedPlan, name: str) -> bool:
+        """Return whether a part's entry has no script to begin with, and words alone describe the part."""
+        made = self.made.get(name)
+        has_script = made is not None and made.script is not None and made.brief == brief_digest(resolved, name)
+        return not (has_script or name in self.begun or any(image.part == name for image in self.run.request.images))
+
+    def _answers(self, name: str) -> int:
+        """Return how many answers about a part have an address."""
+        return self.made[name].answers if name in self.made else 0
+
+    def _ask_together(self, resolved: Mapping[str, ResolvedPlan], step: str) -> dict[str, Answer]:
+        """Return the first answers for several parts."""
+        kernel, memory, documentation = self.kernel.name, self.memory or NoMemory(), self.documentation or NoDocumentation()
+        texts = {name: specification(plan, name) for name, plan in resolved.items()}
+        examples = [case for text in texts.values() for case in memory.for_part(text, kernel)]
+        snippets = [entry for name, text in texts.items() for entry in documentation.for_part(name, text, kernel, self.port)]
+        return asked_together(
+            resolved,
+            kernel,
+            self.port,
+            step=step,
+            examples=list(dict.fromkeys(examples)),
+            snippets=list(dict.fromkeys(snippets)),
+        )
+
+    def _make(self, resolved: ResolvedPlan, name: str, asked: Future[dict[str, Answer]] | None) -> None:
         """Make one part, or keep it as it is."""
         digest, old, complaint = brief_digest(resolved, name), self.made.get(name), self.complaints.get(name)
-        answers, previous = 0 if old is None else old.answers, None
+        answers, previous = self._answers(name), None
         if old is not None and old.brief == digest and old.script is not None:
             if complaint is not None:
                 previous = Attempt(self._shown(old.script), complaint[0], complaint[1], complaint="part_again")
@@ -227,7 +259,8 @@ class PartBuilder:
             documentation=self.documentation,
         )
         self.made[name] = _Made(digest, answers + self._options["repairs"] + 1, None)  # until it is made: the addresses that may be used
-        written = writer.make(answered=answers, previous=previous)
+        given = None if asked is None else asked.result().get(name)
+        written = writer.make(answered=answers, previous=previous, given=given)
         assert written.realised.script is not None
         self.made[name] = _Made(digest, written.answers, written.realised.script, written.opinions)
         self.announce(name, "built")

@@ -1,6 +1,6 @@
 """Generation: one part, from its entry in the plan to a solid that keeps its contract and looks as specified.
 
-A request depends on the part's own entry, its own connectors, the kernel and what was retrieved: never on another part.
+A request to repair depends on the part's own entry, its own connectors, the kernel and what was retrieved: never on another part.
 """
 
 from __future__ import annotations
@@ -35,10 +35,23 @@ _EXAMPLES: Final = {"build123d": "lid_left.txt", "freecad": "door_left_freecad.t
 Build = Callable[[str, bytes], RealisedPart]
 """Builds the script of a part, or raises `KernelError`."""
 
+Looks = bool | Literal["doubtful"]
+"""Which parts' pictures are compared with their specification: none, all, or the doubtful ones: those whose first script failed, about
+whose solid there is a warning, or of which the user gave a picture.
+"""
+
 Complaint = Literal["part_repair", "part_again", "part_edit", "look_repair"]
 """The prompt that returns an answer to its author: the script failed, the assembly failed, the entry has changed, or an inspector
 complains.
 """
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a model answered for a part: the address of the request, and the text."""
+
+    step: str
+    text: str
 
 
 @dataclass(frozen=True)
@@ -119,7 +132,7 @@ class PartWriter:
         build: Build,
         kernel: PartKernel,
         repairs: int = REPAIRS,
-        looks: bool = False,
+        looks: Looks = False,
         memory: Memory | None = None,
         documentation: Documentation | None = None,
     ) -> None:
@@ -129,7 +142,7 @@ class PartWriter:
         self._pictures = tuple(Image(image.content, image.media_type) for image in run.request.images if image.part == name)
         self._specification = specification(resolved, name)
 
-    def make(self, *, answered: int = 0, previous: Attempt | None = None) -> WrittenPart:
+    def make(self, *, answered: int = 0, previous: Attempt | None = None, given: Answer | None = None) -> WrittenPart:
         """Return the part as built.
 
         After the same failure twice in a row, another approach is requested; the third time ends the attempts. So does a failure of the
@@ -138,23 +151,27 @@ class PartWriter:
         Args:
             answered: Answers that were given before; the address of the next one follows from it.
             previous: The last of these, and what is wrong with it.
+            given: The first answer, if it was asked for together with those of other parts.
 
         Raises:
             BuildError, ContractError, OutputError: The failure of the last answer, when all repairs are used up or the specification is at fault.
         """
         first, alike, best = self._opening(), 0, None
         for number in range(answered + 1, answered + self._repairs + 2):
-            step = f"part/{self._name}/{number}"
-            reply = self._llm.complete(Request(ROLE, step, messages_after(first, previous, anew=alike == 1)))
-            outcome = self._tried(reply.text, step, number)
+            answer = given or self._answer(number, messages_after(first, previous, anew=alike == 1))
+            given = None
+            outcome = self._tried(answer, number)
             if isinstance(outcome, RealisedPart):
                 if best is not None and best.realised.script == outcome.script:  # its author stands by it
                     return WrittenPart(outcome, number, best.opinions)
-                best = WrittenPart(outcome, number, self._opinions(outcome, number))
+                doubtful = (
+                    previous is not None or any(finding.severity == "warning" for finding in outcome.findings) or bool(self._pictures)
+                )
+                best = WrittenPart(outcome, number, self._opinions(outcome, number, doubtful=doubtful))
                 of_script = Findings(finding for finding in best.opinions if finding.route == "code")
                 if not of_script:
                     return best
-                outcome = Attempt(reply.text, _told(of_script), self._picture(outcome), complaint="look_repair")
+                outcome = Attempt(answer.text, _told(of_script), self._picture(outcome), complaint="look_repair")
             if outcome.is_of_design:
                 previous = outcome
                 break
@@ -168,15 +185,19 @@ class PartWriter:
         assert previous.error is not None
         raise previous.error
 
+    def _answer(self, number: int, messages: tuple[Message, ...]) -> Answer:
+        step = f"part/{self._name}/{number}"
+        return Answer(step, self._llm.complete(Request(ROLE, step, messages)).text)
+
     def _opening(self) -> tuple[Message, ...]:
         kernel = self._kernel.name
         examples = self._memory.for_part(self._specification, kernel)
         snippets = self._documentation.for_part(self._name, self._specification, kernel, self._llm)
         return opening(self._resolved, self._name, kernel, self._pictures, examples=examples, snippets=snippets)
 
-    def _opinions(self, realised: RealisedPart, number: int) -> Findings:
-        """Return an inspector's complaints about a part; none if its answers do not have the form."""
-        if not self._looks:
+    def _opinions(self, realised: RealisedPart, number: int, *, doubtful: bool) -> Findings:
+        """Return an inspector's complaints about a part; none if nobody looks at it, or its answers do not have the form."""
+        if not (doubtful if self._looks == "doubtful" else self._looks):
             return Findings()
         step = f"look/{self._name}/{number}"
         try:
@@ -192,8 +213,9 @@ class PartWriter:
     def _picture(self, realised: RealisedPart) -> Image:
         return part_picture(realised.part, realised.digests["build"])
 
-    def _tried(self, said: str, step: str, number: int) -> RealisedPart | Attempt:
+    def _tried(self, answer: Answer, number: int) -> RealisedPart | Attempt:
         """Return the part that an answer made, or why it made none."""
+        said = answer.text
         why = objection(said)
         if why is not None:
             refused = Finding(
@@ -205,7 +227,7 @@ class PartWriter:
             )
             return Attempt.of(said, ContractError(str(refused), findings=(refused,), parts=(self._name,)))
         try:
-            script = parse_script(said, step=step)
+            script = parse_script(said, step=answer.step)
         except OutputError as error:
             return Attempt.of(said, error)
         mark = build_digest(self._resolved, self._name, script, self._kernel.name, self._kernel.version, DEFLECTION_MM)
@@ -237,11 +259,16 @@ def opening(
     snippets: Sequence[str] = (),
 ) -> tuple[Message, ...]:
     """Return the first messages to a part's author: the contract of a script, what was retrieved, and the part's own entry."""
-    instructions = prompt(f"part_{kernel}", example=prompt_file(_EXAMPLES[kernel]))
-    instructions += listed_cases("# Parts of other products that were built well", examples)
-    instructions += listed_cases("# From the documentation", snippets)
+    told = instructions(kernel, examples=examples, snippets=snippets)
     shown = f"\n\n{len(pictures)} picture(s) of the part follow." if pictures else ""
-    return (system(instructions), user(f"The specification:\n\n{specification(resolved, name)}{shown}", *pictures))
+    return (system(told), user(f"The specification:\n\n{specification(resolved, name)}{shown}", *pictures))
+
+
+def instructions(kernel: str, *, examples: Sequence[str] = (), snippets: Sequence[str] = ()) -> str:
+    """Return what an author of scripts is told of every part: the contract of a script, and what was retrieved."""
+    told = prompt(f"part_{kernel}", example=prompt_file(_EXAMPLES[kernel]))
+    told += listed_cases("# Parts of other products that were built well", examples)
+    return told + listed_cases("# From the documentation", snippets)
 
 
 def messages_after(first: tuple[Message, ...], previous: Attempt | None, *, anew: bool = False) -> tuple[Message, ...]:

@@ -103,7 +103,11 @@ _NEEDED: Final[Mapping[str, type | tuple[type, ...]]] = {
     "rounds": int,
     "formats": (list, tuple),
 }
-_UNSAID: Final[Mapping[str, str]] = {"kernel": "build123d", "variant": "full"}  # for runs that were begun when there was no other choice
+_UNSAID: Final[Mapping[str, str | int]] = {
+    "kernel": "build123d",
+    "variant": "full",
+    "together": 1,
+}  # of runs begun when there was no choice
 
 
 def _options_of(run: Run) -> Mapping[str, Any]:
@@ -113,7 +117,11 @@ def _options_of(run: Run) -> Mapping[str, Any]:
         RunError: Naming the options that are missing.
     """
     options = {**_UNSAID, **run.request.options}
-    wrong = [key for key, kind in {**_NEEDED, **dict.fromkeys(_UNSAID, str)}.items() if not isinstance(options.get(key), kind)]
+    wrong = [
+        key
+        for key, kind in {**_NEEDED, **{key: type(usual) for key, usual in _UNSAID.items()}}.items()
+        if not isinstance(options.get(key), kind)
+    ]
     if options.get("task") not in {"generate", "edit"}:
         raise RunError.at(run.path, "This run was built from a plan, without a model.", "Repeat `articad build` with the same --out.")
     if wrong:

@@ -13,7 +13,8 @@ from pydantic import Field
 
 from articad.agents.evidence import Evidence, told
 from articad.agents.inspection import MOTIONS, asked_for, structure, wanted
-from articad.agents.llm import LLM, Image, system, user
+from articad.agents.llm import LLM, Image, Reply, system, user
+from articad.agents.part_group import sections
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
 from articad.agents.replies import ReplyForm, ask, reader, schema_of
@@ -77,14 +78,20 @@ def review(
 def trajectory(run: Run) -> dict[str, Any]:
     """Return how a run came to its end: answers of designers, rounds, and the answers about each part that has a script."""
     steps = run.replies()
+    scripted = [name for name in run.part_names() if run.script(name) is not None]
+    together = [sections(_said(run, step), scripted) for step in steps if step.startswith("parts/")]
     designs = [step for step in steps if step.split("/")[0] in {"design", "edit", "connect", "script"}]
     rounds = 1
     while run.round(rounds) is not None:
         rounds += 1
-    parts = {
-        name: [step for step in steps if step.startswith(f"part/{name}/")] for name in run.part_names() if run.script(name) is not None
-    }
-    return {"designs": len(designs), "rounds": rounds, "scripts": {name: len(answers) for name, answers in parts.items()}}
+    alone = {name: sum(step.startswith(f"part/{name}/") for step in steps) for name in scripted}
+    scripts = {name: count + sum(name in answers for answers in together) for name, count in alone.items()}
+    return {"designs": len(designs), "rounds": rounds, "scripts": scripts}
+
+
+def _said(run: Run, step: str) -> str:
+    stored = run.reply(step)
+    return "" if stored is None else Reply.from_json(stored.get("reply") or {}).text
 
 
 def scores(run: Run) -> dict[str, float]:

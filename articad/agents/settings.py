@@ -8,7 +8,8 @@ from typing import Any, Final, Literal
 
 from articad.agents.brainstorm import Choose
 from articad.agents.design import TRIES
-from articad.agents.part_writer import REPAIRS
+from articad.agents.part_group import TOGETHER
+from articad.agents.part_writer import REPAIRS, Looks
 from articad.agents.retrieval import Documentation, Memory
 from articad.aliases import Progress
 from articad.kernels.choice import kernel_named
@@ -29,7 +30,9 @@ class RunOptions:
         designs: Answers within which a plan must be valid.
         repairs: How often a failed part script may be repaired.
         rounds: How often parts are assembled and checked; findings of the last check stay in the report.
-        look: Whether a model compares each part's pictures with its specification. It must accept images.
+        look: Whether a model compares a part's pictures with its specification: True for each part, "doubtful" for those whose first
+            script failed, about whose solid there is a warning, or of which you gave a picture. The model must accept images.
+        together: Parts whose first scripts are asked for in one request.
         inspection: Whether one model describes the assembly from pictures and one judges it. It must accept images.
         ideas: Whether alternatives are proposed first; "auto" does so if the request leaves open what to build.
         pick: The alternative to make, from 1; alternatives are then always proposed.
@@ -43,7 +46,8 @@ class RunOptions:
     designs: int = TRIES
     repairs: int = REPAIRS
     rounds: int = ROUNDS
-    look: bool = True
+    look: Looks = "doubtful"
+    together: int = TOGETHER
     inspection: bool = True
     ideas: Brainstorm = "auto"
     pick: int | None = None
@@ -59,8 +63,8 @@ def generate_request(options: RunOptions, kernel: str) -> dict[str, Any]:
         **_common(options),
         "kernel": kernel,
         "variant": options.variant,
-        "look": options.look and judged,
-        "inspection": options.inspection and judged,
+        "look": judged and options.look,
+        "inspection": judged and options.inspection,
         "ideas": "always" if options.pick is not None else options.ideas,
         "pick": options.pick,
         "finetune": True,
@@ -78,13 +82,19 @@ def edit_request(options: RunOptions, kernel: str, base: str, values: Mapping[st
         "kernel": kernel,
         "variant": "full",
         "finetune": worded,
-        "look": options.look and worded,
-        "inspection": options.inspection and worded,
+        "look": worded and options.look,
+        "inspection": worded and options.inspection,
     }
 
 
 def _common(options: RunOptions) -> dict[str, Any]:
-    common = {"designs": options.designs, "repairs": options.repairs, "rounds": options.rounds, "formats": list(options.formats)}
+    common = {
+        "designs": options.designs,
+        "repairs": options.repairs,
+        "rounds": options.rounds,
+        "together": options.together,
+        "formats": list(options.formats),
+    }
     return common if options.review == "none" else common | {"review": options.review}  # as in older recordings, which have no reviews
 
 

@@ -145,8 +145,8 @@ def _run_options(options: argparse.Namespace, *, sees: bool) -> RunOptions:
         formats=options.formats,
         repairs=options.repairs,
         rounds=options.rounds,
-        look=options.look and sees,
-        inspection=options.inspection and sees,
+        look=sees and options.look,
+        inspection=sees and options.inspection,
         review="none" if not options.review else "model" if sees else "rules",
         **stated,
     )

@@ -15,6 +15,7 @@ from articad_bench.terminal_tables import print_data, print_judged, print_senten
 
 if TYPE_CHECKING:
     from articad.agents.llm import Budget
+    from articad.agents.part_writer import Looks
     from articad.batches.pool import Call
     from articad.commands.terminal import Report, Terminal
     from articad_bench.judge import Judged
@@ -165,7 +166,7 @@ def _run_again(tasks: list[tuple[Path, Task]], options: argparse.Namespace, term
         )
 
 
-def _run_here(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal, *, look: bool) -> list[Row]:
+def _run_here(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal, *, look: Looks) -> list[Row]:
     from articad.agents.recollection import StoredMemory, remember
     from articad.commands.models import asked_model, model_name
     from articad.kernels.choice import kernel_named

@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from articad.agents.llm import LLM, Replay
+from articad.agents.settings import RunOptions
 from articad.errors import ReadError
 from articad_bench.scoring import EDITED, model_of
 from articad_bench.task import Task
+
+
+def as_recorded(options: RunOptions, llm: LLM) -> RunOptions:
+    """Return options with which a model is asked just what a recording answers; the same options for any other model."""
+    if not isinstance(llm, Replay):
+        return options
+    stated = llm.run.request.options
+    return replace(options, look=options.look and stated.get("look", False), together=stated.get("together", 1))
 
 
 class RecordedAnswers:

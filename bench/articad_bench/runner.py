@@ -16,7 +16,7 @@ from typing import Any
 
 from articad.agents.edit import edit
 from articad.agents.llm import LLM
-from articad.agents.part_writer import REPAIRS
+from articad.agents.part_writer import REPAIRS, Looks
 from articad.agents.pipeline import generate
 from articad.agents.retrieval import Memory
 from articad.agents.review import trajectory
@@ -25,6 +25,7 @@ from articad.errors import TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.runs.record import assembly_of
 from articad.runs.run import Run, digest
+from articad_bench.recorded import as_recorded
 from articad_bench.row import Row, keep_row, kept_row
 from articad_bench.subject import Subject
 from articad_bench.task import Task, read_image
@@ -46,7 +47,7 @@ def run_tasks(
     kernel: PartKernel | None = None,
     cache: BuildCache | None = None,
     memory: Memory | None = None,
-    look: bool = True,
+    look: Looks = "doubtful",
     model: str = "",
     repairs: int = REPAIRS,
     rounds: int = ROUNDS,
@@ -65,7 +66,7 @@ def run_tasks(
         kernel: Likewise.
         cache: Likewise.
         memory: Likewise.
-        look: Whether models look at parts and assembly.
+        look: As for `generate`; if false, models do not look at the assembly either.
         model: Name of the model that answers: rows of another model are made again.
         repairs: As for `generate`.
         rounds: As for `generate`.
@@ -85,7 +86,7 @@ def run_tasks(
         row = kept_row(place, key)
         if row is None:
             made = _Made(task, folder, place, key, (ask, ask_edit or ask), finished)
-            options = RunOptions(variant=variant, look=look, inspection=look, ideas="never", repairs=repairs, rounds=rounds)
+            options = RunOptions(variant=variant, look=look, inspection=bool(look), ideas="never", repairs=repairs, rounds=rounds)
             row = made.row(options, Services(kernel=kernel, cache=cache, memory=memory))
             if not made.unreached:
                 keep_row(place, row)
@@ -115,7 +116,9 @@ class _Made:
         task, row, started = self._task, Row.of(self._task, self._key), time.monotonic()
         try:
             images = [read_image(self._folder, image) for image in task.images]
-            run = generate(task.prompt, llm=self._asks[0](task), images=images, out=self._run, options=options, services=services)
+            llm = self._asks[0](task)
+            options = as_recorded(options, llm)
+            run = generate(task.prompt, llm=llm, images=images, out=self._run, options=options, services=services)
             assembly = assembly_of(run, cache=services.cache)
             row = replace(row, judgements=task.judge(Subject(assembly)))
             self._tell(run)
@@ -128,7 +131,9 @@ class _Made:
     def _with_edit(self, row: Row, run: Run, before: Subject, options: RunOptions, services: Services) -> Row:
         assert self._task.edit is not None
         try:
-            edited = edit(run, self._task.edit.prompt, llm=self._asks[1](self._task), out=self._edit, options=options, services=services)
+            llm = self._asks[1](self._task)
+            options = as_recorded(options, llm)
+            edited = edit(run, self._task.edit.prompt, llm=llm, out=self._edit, options=options, services=services)
             subject = Subject(assembly_of(edited, cache=services.cache), before=before.assembly)
             row = replace(row, edited=self._task.judge_edit(subject))
             self._tell(edited)

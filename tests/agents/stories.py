@@ -152,7 +152,11 @@ def shared_cache() -> BuildCache:
 
 
 def settings(**given: Any) -> dict[str, Any]:
-    """Return the arguments `options` and `services` of a run made of the keywords of either; others stay."""
+    """Return the arguments `options` and `services` of a run made of the keywords of either; others stay.
+
+    Unless stated otherwise, each part is asked for alone and looked at.
+    """
+    given = {"together": 1, "look": True} | given
     found: dict[str, Any] = {}
     for argument, kind in (("options", RunOptions), ("services", Services)):
         names = {field.name for field in fields(kind)} & given.keys()

@@ -1,0 +1,80 @@
+"""One request for the first scripts of several parts: their author gets the instructions once, and sees all their specifications.
+
+An answer is split by its headings. A part without a script in it is asked for alone, and so is whatever must be repaired.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from articad.agents.llm import LLM, Message, Request, system, user
+from articad.agents.part_writer import ROLE, Answer, instructions
+from articad.agents.prompts import prompt
+from articad.plan.entry import specification
+from articad.plan.resolve import ResolvedPlan
+
+TOGETHER: Final = 6  # parts in one request: about 9,000 characters of scripts, and a product of 40 parts still fills eight requests
+_HEADING: Final = re.compile(r"#{1,6}[ \t]*`?(\w+)`?[ \t]*:?")
+LEAST: Final = 3  # two parts are written sooner side by side
+
+
+def grouped(names: Sequence[str], most: int) -> list[tuple[str, ...]]:
+    """Return names in groups of nearly equal size, in their order; none where there are fewer than `LEAST` names.
+
+    Args:
+        names: Parts without a script.
+        most: Parts in one group.
+    """
+    if min(len(names), most) < LEAST:
+        return []
+    count = -(-len(names) // most)
+    edges = [len(names) * index // count for index in range(count + 1)]
+    return [tuple(names[start:end]) for start, end in itertools.pairwise(edges)]
+
+
+def asked_together(
+    resolved: Mapping[str, ResolvedPlan], kernel: str, llm: LLM, *, step: str, examples: Sequence[str], snippets: Sequence[str]
+) -> dict[str, Answer]:
+    """Ask for the scripts of several parts at once.
+
+    Args:
+        resolved: By part, the plan that has its entry.
+        kernel: The dialect of the scripts.
+        llm: The model.
+        step: Address of the request.
+        examples: Parts of other products, with their scripts.
+        snippets: Documentation of the kernel.
+
+    Returns:
+        The answer for each part that has one.
+    """
+    reply = llm.complete(Request(ROLE, step, opening(resolved, kernel, examples=examples, snippets=snippets)))
+    return {name: Answer(step, text) for name, text in sections(reply.text, tuple(resolved)).items()}
+
+
+def opening(
+    resolved: Mapping[str, ResolvedPlan], kernel: str, *, examples: Sequence[str] = (), snippets: Sequence[str] = ()
+) -> tuple[Message, ...]:
+    """Return the messages to the author of several parts."""
+    several = f"{instructions(kernel, examples=examples, snippets=snippets)}\n\n{prompt('part_group', count=str(len(resolved)))}"
+    entries = [f"## {name}\n\n{specification(plan, name)}" for name, plan in resolved.items()]
+    return (system(several), user("\n\n".join(["The specifications:", *entries])))
+
+
+def sections(text: str, names: Sequence[str]) -> dict[str, str]:
+    """Return what an answer says of each part: what follows its heading, up to the next heading of a part; no line of a script is one."""
+    found: dict[str, str] = {}
+    name, in_block = None, False
+    for line in text.splitlines(keepends=True):
+        if line.lstrip().startswith("```"):
+            in_block = not in_block
+        heading = None if in_block else _HEADING.fullmatch(line.strip())
+        if heading is not None and heading[1] in names:
+            name = heading[1]
+            found[name] = ""
+        elif name is not None:
+            found[name] += line
+    return found
