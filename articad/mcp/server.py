@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 import shutil
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
@@ -40,6 +40,9 @@ _LOOK_S: Final = 300.0
 _GRACE_S: Final = 60.0  # beyond a certificate's own budget: for reading, and for the claim in progress
 _PICTURES: Final = 4  # of one answer
 _PIXELS: Final = 320  # a host charges for the area: a third of 512 x 512, and joints can still be told apart
+
+_CHARACTERS: Final = 100_000  # of an argument that is neither a plan nor a script; the system passes no word of 128 KiB to a command
+_INTENT: Final = 1_000  # characters that are looked up in the documentation
 
 _SHOWING: Final = "render"  # the tool beside whose pictures a host that knows MCP Apps shows the design's page
 _SHELL: Final = "ui://articad/page.html"
@@ -411,6 +414,7 @@ def _told(method: Tool, refusal: type[Exception] = ToolError) -> Tool:
     @wraps(method)
     async def told(*arguments: Any, **named: Any) -> Any:
         try:
+            _require_short(named)
             answer = await method(*arguments, **named)
         except ArticadError as error:
             raise refusal("\n".join(map(str, error.findings)) or str(error)) from error
@@ -419,6 +423,28 @@ def _told(method: Tool, refusal: type[Exception] = ToolError) -> Tool:
         return answers.compact(answer) if isinstance(answer, dict) else answer
 
     return told
+
+
+def _size(value: Any) -> int:
+    """Return the number of characters of a text, or of a value's JSON."""
+    try:
+        return len(value) if isinstance(value, str) else len(json.dumps(value))
+    except ValueError:  # a whole number of thousands of digits, which the tools refuse
+        return 0
+
+
+def _require_short(arguments: Mapping[str, Any]) -> None:
+    """Check the size of the arguments of a tool that have no bounds of their own.
+
+    Raises:
+        ReadError: If one is too long.
+    """
+    for name, value in arguments.items():
+        if name in {"plan", "script"} or not isinstance(value, str | list | tuple | dict):
+            continue
+        most = _INTENT if name == "intent" else _CHARACTERS
+        if (size := _size(value)) > most:
+            raise ReadError.at(name, f"{name} has {size} characters; at most {most} are accepted.", "Ask for less at once.")
 
 
 def _teller(context: Context) -> Tell:

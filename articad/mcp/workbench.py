@@ -61,8 +61,8 @@ class Workbench:
         Raises:
             ReadError: If the name leads out of it, also by links.
         """
-        path = (self.root / name).resolve()
-        if not path.is_relative_to(self.root) or "\0" in name:
+        path = self.root if "\0" in name else (self.root / name).resolve()  # resolve raises ValueError for a zero byte
+        if "\0" in name or not path.is_relative_to(self.root):
             raise ReadError.at(name, f"{name} is outside the root.", "Name a file under it, relative to it.")
         return path
 
@@ -99,8 +99,10 @@ class Workbench:
         """Save a plan as the current one of a design.
 
         Raises:
-            ReadError: If it is too large, or holds characters or numbers that no file should.
+            ReadError: If it is too large or too deep, or holds characters or numbers that no file should.
         """
+        if is_nested_deeper(plan, MOST_LEVELS):
+            raise ReadError.at(name, f"The plan would be nested deeper than {MOST_LEVELS} levels.", "A plan has about ten.")
         if spoiled(plan) is not None:
             raise ReadError.at(name, f"The plan holds {SPOILED}.", "Write it without them.")
         try:
@@ -308,7 +310,7 @@ def gathered(report: Json) -> list[Json]:
 
 
 def _fitted(answer: Json, limit: int) -> Json:
-    """Shorten an answer to a number of bytes, and say so: whole findings and entries are dropped, the last ones first."""
+    """Shorten an answer to a number of bytes, and say so: whole findings and entries are dropped, the last ones first, then texts are cut."""
     while len(json.dumps(answer, ensure_ascii=False).encode()) > limit:
         lists = [key for key, value in answer.items() if isinstance(value, list) and len(value) > 1]
         if lists:
@@ -316,12 +318,23 @@ def _fitted(answer: Json, limit: int) -> Json:
             answer[longest] = answer[longest][: len(answer[longest]) // 2]
         else:
             largest = max((key for key in answer if key not in {"ok", "truncated"}), key=lambda key: len(json.dumps(answer[key])))
-            text = json.dumps(answer[largest], ensure_ascii=False)
-            if len(text) <= _LEAST:
+            shorter = _shortened(answer[largest])
+            if shorter == answer[largest]:
                 break
-            answer[largest] = text[: max(len(text) // 2, _LEAST)]
+            answer[largest] = shorter
         answer["truncated"] = f"cut to {limit} bytes; the whole report is in the design's run"
     return answer
+
+
+def _shortened(value: Any) -> Any:
+    """Return an only finding with half of its longest text, of other values half of their JSON; unchanged if that is short."""
+    if isinstance(value, list) and len(value) == 1 and isinstance(value[0], dict):
+        texts = {key: text for key, text in value[0].items() if isinstance(text, str) and len(text) > _LEAST}
+        if texts:
+            longest = max(texts, key=lambda key: len(texts[key]))
+            return [value[0] | {longest: _shortened(texts[longest])}]
+    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return text[: max(len(text) // 2, _LEAST)] if len(text) > _LEAST else value
 
 
 _LEAST: Final = 200  # characters of a shortened entry

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import math
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from articad import examples
+from articad.mcp.workbench import FULL_BYTES
+from articad.plan.reading import MOST_LEVELS
 from tests.mcp.test_links import CALLS, told
 
 PLANS = {
@@ -87,3 +90,44 @@ def test_an_address_of_nothing_is_refused_in_words(address: str, tmp_path: Path)
     for value in (1, {"name": "x"}, None):
         answer = told(tmp_path, "edit_plan", design="box", changes={address: value})
         assert "Traceback" not in answer
+
+
+@pytest.mark.parametrize("levels", [MOST_LEVELS, MOST_LEVELS + 1, 190])
+def test_a_plan_that_no_tool_could_read_again_is_not_written(levels: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _no_commands(monkeypatch)
+    (tmp_path / "box").mkdir()
+    before = (examples.folder("wardrobe") / "plan.json").read_bytes()
+    (tmp_path / "box" / "plan.json").write_bytes(before)
+    deep: Any = 1
+    for _ in range(levels):
+        deep = {"a": deep}
+    for tool, arguments in (("edit_plan", {"changes": {"description": deep}}), ("check_plan", {"plan": {"description": deep}})):
+        assert f"deeper than {MOST_LEVELS} levels" in told(tmp_path, tool, design="box", **arguments)
+        assert (tmp_path / "box" / "plan.json").read_bytes() == before
+
+
+@pytest.mark.parametrize("sign", ["x", "x.", "é", "\u202e", "\U0001f4a5", "[1]"])
+def test_a_finding_of_any_length_is_told(sign: str, tmp_path: Path) -> None:
+    """A finding quotes the address: an answer is cut to its size within the texts of a finding, and stays one."""
+    (tmp_path / "box").mkdir()
+    (tmp_path / "box" / "plan.json").write_bytes((examples.folder("wardrobe") / "plan.json").read_bytes())
+    answer = told(tmp_path, "edit_plan", design="box", changes={sign * (20_000 // len(sign)): 1})
+    assert "Traceback" not in answer
+    assert len(answer.encode()) <= FULL_BYTES
+
+
+@pytest.mark.parametrize("tool", CALLS)
+def test_an_argument_that_is_no_name_for_its_length_is_refused_at_once(tool: str, tmp_path: Path) -> None:
+    """Each text of each tool, but plans and scripts, which have bounds of their own."""
+    (tmp_path / "box").mkdir()
+    (tmp_path / "box" / "plan.json").write_bytes((examples.folder("wardrobe") / "plan.json").read_bytes())
+    long = "x " * 1_000_000
+    sound = {key: "box" if value == "NAMED" else value for key, value in CALLS[tool].items()}
+    for name, value in sound.items():
+        if name not in {"script", "plan", "dialect", "budget_s"}:
+            bad = {long: 1.0} if isinstance(value, dict) else [long] if isinstance(value, list) else long
+            began = time.process_time()
+            answer = told(tmp_path, tool, **sound | {name: bad})
+            assert "characters" in answer
+            assert len(answer) < 2_000
+            assert time.process_time() - began < 2.0

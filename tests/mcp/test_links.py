@@ -99,7 +99,7 @@ def test_a_linked_design_or_file_is_refused_and_tells_nothing(tool: str, root: P
     (root / "bad.urdf").symlink_to(secret)
     (root / "other.xml").symlink_to(secret)
     before = {path: path.read_bytes() for path in root.parent.rglob("*") if path.is_file() and not path.is_relative_to(root)}
-    for named in ("plan", "within", "bad", "bad.urdf", "../secret", "bad/plan.json"):
+    for named in ("plan", "within", "bad", "bad.urdf", "../secret", "bad/plan.json", "box\0", "box/\0/../../secret", "x" * 5000):
         arguments = {key: named if value == "NAMED" else value for key, value in CALLS[tool].items()}
         answer = told(root, tool, **arguments)
         assert "the-first-word" not in answer, named
