@@ -2,23 +2,27 @@
 
 Decided by proof, from the bores, pins, sockets and balls of joints and from the probe of dimensions. A script departs
 
-- if a dimension of its part has no effect;
+- if a dimension of its part has no effect, unless the script names it and it has one once a number of the plan that is far out of proportion
+  is a thousandth: what the dimension sizes is then hidden or cut away by what that number sizes;
 - if its part alone has nothing round about the axis of a joint, or has its bore or pin beside it;
 - if a bore or pin that makes a joint has a diameter that none of its dimensions states;
 - if it alone is ordered with a clearance, and the surfaces of both parts touch where a fit demands a gap;
-- if such a bore takes its pin, but is closed at a depth that its dimensions do not give;
+- if such a bore takes its pin, but is closed at a depth that its dimensions do not give, or at both ends, so that no pin could go in;
+- if the slot or the tongue of a slider, each as wide as its dimensions state and with play, lies beside the other at a distance that its
+  dimensions do not give;
 - if its shape, mirrored, turned or shifted as a whole, has no fault (`misplaced`).
 
 What else is wrong about such a part may follow from that, so it waits for the script. A fault of two parts of which neither departs follows
 from the orders, so it goes to the designer. All faults of two parts go to the same author. Where a joint without
-bore and pin has faces that are neither planes, cylinders nor spheres, departures cannot be measured: its faults stay open, but a fit goes
-to the designer if the overlap at rest of its parts has a root cause and goes there.
+bore and pin has faces that are neither planes, cylinders nor spheres, and no slot and tongue as wide as their dimensions state, departures
+cannot be measured: its faults stay open, but a fit goes to the designer if the overlap at rest of its parts has a root cause and goes there.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple, Self
@@ -27,16 +31,19 @@ import numpy as np
 
 from articad.agents.misplaced import misplaced
 from articad.assembly import Assembly
+from articad.errors import ArticadError
 from articad.findings import Finding, Findings
 from articad.geometry.faces import Face
 from articad.interference.report import PairCheck
 from articad.interference.scene import Scene
+from articad.kernels.slips import numbers_of
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.fields import lengths_in
 from articad.plan.resolve import Fit, ResolvedPlan
 from articad.plan.usage import CLEARANCE
 from articad.realisation.bores import TILT, along, beside
 from articad.realisation.sides import Sides, sides
+from articad.realisation.slots import Between, Slot, slots_of
 
 __all__ = ["HELD", "addressed", "source_of"]
 
@@ -51,38 +58,46 @@ _BESIDE: Final = 2.0  # distance from the joint's axis over the diameter: farthe
 _ALIKE: Final = 0.3  # difference of radii, as a share of the larger
 _ROUNDING_MM: Final = 0.005  # of a diameter
 _PLAY_MM: Final = 0.02  # a smaller clearance is none
+_ASIDE_MM: Final = 0.05  # of a tongue beside its slot, beyond their play
+_OUT_OF_PROPORTION: Final = 5.0  # a length over the longest other one of its part, or a clearance over the shortest one
+_OF_ROUND: Final = re.compile(r"radius|diameter|bore|hole|pin|shaft|arbor|axle|spigot|socket|ball|thread")
+_OF_FLAT: Final = re.compile(r"width|height|length|thick|depth|wall|board|gap|pitch|(^|_)[xyz](_|$)")
 _WORDS: Final = {"cylinder": ("bore", "pin"), "sphere": ("socket", "ball")}
 
 
 class _Round(NamedTuple):
-    """A cylinder or sphere that makes a joint.
+    """A cylinder or sphere that makes a joint, or the slot or tongue of a slider.
 
     Attributes:
         part: Its part.
-        what: "bore", "pin", "socket" or "ball".
-        diameter: Its diameter [mm].
-        off: Error of its radius [mm].
+        what: "bore", "pin", "socket", "ball", "slot" or "tongue".
+        diameter: Its diameter, or its width [mm].
+        off: Error of its radius, or of half its width [mm].
         depth: Of a bore that is closed at one end [mm], else None.
+        shut: Whether a bore is closed at both ends.
     """
 
     part: str
     what: str
     diameter: float
     off: float
-    depth: float | None
+    depth: float | None = None
+    shut: bool = False
 
 
 class _Joined(NamedTuple):
-    """A joint with the faces of both sides, and its bores with their pins or sockets with their balls."""
+    """A joint with the faces of both sides, its bores with their pins or sockets with their balls, and the slots of a slider."""
 
     joint: Joint
     sides: Sides
     fits: tuple[tuple[_Round, _Round], ...]
+    slots: tuple[Slot, ...]
 
     @classmethod
     def of(cls, scene: Scene, joint: Joint) -> Self:
         both = sides(scene, joint)
-        return cls(joint, both, tuple(_mating(both)))
+        fits = tuple(_mating(both))
+        return cls(joint, both, fits, tuple(slots_of(both)) if joint.type is JointType.SLIDER and not fits else ())
 
     @property
     def parts(self) -> frozenset[str]:
@@ -111,9 +126,7 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
         departed[found.part] = (
             f"All faults of {found.part} are gone if its shape is {found.how} of its frame: the script built it elsewhere."
         )
-    unmeasured = {
-        one.parts for one in joined if not one.fits and any(each.face.kind == "other" for each in (*one.sides.parent, *one.sides.child))
-    }
+    unmeasured = {one.parts for one in joined if _is_unmeasured(one, assembly.resolved)}
     by_fit = {f"joints.{one.joint.name}.fit": one for one in joined if one.joint.name in assembly.fits}
     fitting = {
         one.where: _fitting(one, by_fit[one.where], assembly.fits[by_fit[one.where].joint.name], assembly.resolved)
@@ -187,7 +200,7 @@ def _departed(assembly: Assembly, resolved: ResolvedPlan, joined: Sequence[_Join
     found: dict[str, str] = {}
     for source in sorted({source_of(name, resolved) for one in joined for name in one.parts}):
         unused = assembly.realised[source].findings.of("W_DIMENSION_UNUSED")
-        if unused:
+        if unused and not (_is_named(unused[0]) and _is_hidden(unused[0], assembly, resolved, source)):
             found[source] = f"{source} does not follow its dimension {unused[0].where.rsplit('.', 1)[-1]!r}."
     for one in joined:
         for part, reason in _elsewhere(one) if not one.fits else ():
@@ -198,14 +211,80 @@ def _departed(assembly: Assembly, resolved: ResolvedPlan, joined: Sequence[_Join
             dimensions = resolved.parts[source].dimensions
             which = f"The {surface.what} of {source} in joint {one.joint.name!r}"
             goes_in = mating.diameter <= surface.diameter  # else the depth explains nothing
-            if _stated_by(surface, dimensions) is None:
+            if surface.shut and goes_in:
+                reason = f"{which} is closed at both ends, so that the {mating.what} cannot go in."
+            elif _stated_by(surface, dimensions) is None:
                 reason = f"{which} has a diameter of {surface.diameter:.4g} mm, which none of its dimensions states."
             elif surface.depth is not None and goes_in and not _is_given(surface.depth, dimensions):
                 reason = f"{which} is {surface.depth:.4g} mm deep, which its dimensions do not give."
             else:
                 continue
             found.setdefault(source, reason)
+        for side, reason in _aside(one, resolved):
+            source = source_of(side.part, resolved)
+            found.setdefault(source, f"The {reason} of {source} in joint {one.joint.name!r}, which its dimensions do not give.")
     return found
+
+
+def _is_named(unused: Finding) -> bool:
+    """Return whether the script names a dimension that has no effect."""
+    return "does not name it" not in unused.message
+
+
+def _is_hidden(unused: Finding, assembly: Assembly, resolved: ResolvedPlan, source: str) -> bool:
+    """Return whether a dimension has an effect once a number of the plan that is far out of proportion is a thousandth of what it is."""
+    for address, value in _out_of_proportion(resolved, source):
+        try:
+            other = assembly.with_changes({address: value / 1000.0})
+        except (ArticadError, ValueError):
+            continue
+        if unused.where not in {finding.where for finding in other.realised[source].findings.of("W_DIMENSION_UNUSED")}:
+            return True
+    return False
+
+
+def _out_of_proportion(resolved: ResolvedPlan, source: str) -> Iterator[tuple[str, float]]:
+    """Yield numbers of the plan far longer than all lengths of a part that do not follow from them; of a clearance, than the shortest."""
+    lengths = lengths_in(resolved.parts[source].dimensions)
+    for address, (value, driven) in numbers_of(resolved, source, lengths).items():
+        others = [abs(length) for name, length in lengths.items() if name not in driven and length]
+        limit = min(others, default=math.inf) if CLEARANCE.search(address) else max(others, default=math.inf)
+        if abs(value) > _OUT_OF_PROPORTION * limit:
+            yield address, value
+
+
+def _aside(joined: _Joined, resolved: ResolvedPlan) -> Iterator[tuple[Between, str]]:
+    """Yield the slot or the tongue of a slider that alone lies at a distance from the axis which its dimensions do not give."""
+    for slot in joined.slots:
+        if not 0.0 <= slot.play < slot.shift - _ASIDE_MM or not _are_stated(slot, resolved):
+            continue  # a tongue that is too thick may well lie beside a slot on one side
+        strange = [
+            (side, what)
+            for side, what in ((slot.slot, "slot"), (slot.tongue, "tongue"))
+            if not any(_is_given(times * abs(side.middle), resolved.parts[source_of(side.part, resolved)].dimensions) for times in (1, 2))
+        ]
+        if len(strange) == 1:
+            ((side, what),) = strange
+            yield side, f"middle of the {what} is {abs(side.middle):.4g} mm beside the axis"
+
+
+def _are_stated(slot: Slot, resolved: ResolvedPlan) -> bool:
+    """Return whether the dimensions of both parts state how wide slot and tongue are."""
+    return all(_stated_by(each, resolved.parts[source_of(each.part, resolved)].dimensions) is not None for each in _prismatic(slot))
+
+
+def _prismatic(slot: Slot) -> tuple[_Round, _Round]:
+    return (
+        _Round(slot.slot.part, "slot", slot.slot.width, slot.slot.off),
+        _Round(slot.tongue.part, "tongue", slot.tongue.width, slot.tongue.off),
+    )
+
+
+def _is_unmeasured(joined: _Joined, resolved: ResolvedPlan) -> bool:
+    """Return whether departures of a joint's parts cannot be measured."""
+    if joined.fits or any(_are_stated(slot, resolved) for slot in joined.slots):
+        return False
+    return any(each.face.kind == "other" for each in (*joined.sides.parent, *joined.sides.child))
 
 
 def _addressed(
@@ -244,7 +323,7 @@ def _fitting(finding: Finding, joined: _Joined, fit: Fit, resolved: ResolvedPlan
     least, most = fit.gap_min or 0.0, fit.gap_max
     meant = 0.0 if fit.contact == "required" else least if most is None else (least + most) / 2
     offers = []
-    for bore, pin in joined.fits:
+    for bore, pin in joined.fits or [_prismatic(slot) for slot in joined.slots]:
         for surface, diameter in ((bore, pin.diameter + 2 * meant), (pin, bore.diameter - 2 * meant)):
             source = source_of(surface.part, resolved)
             stated = _stated_by(surface, resolved.parts[source].dimensions)
@@ -269,8 +348,9 @@ def _mating(both: Sides) -> Iterator[tuple[_Round, _Round]]:
         for (part, bore), (against, pin) in itertools.product(bores, pins):
             if abs(bore.radius - pin.radius) <= _ALIKE * max(bore.radius, pin.radius) and _goes_into(pin, bore):
                 around, inside = _WORDS[bore.kind]
-                depth = _depth(bore, [each.face for each in one if each.part == part])
-                yield _Round(part, around, 2 * bore.radius, bore.off, depth), _Round(against, inside, 2 * pin.radius, pin.off, None)
+                floors = _floors(bore, [each.face for each in one if each.part == part])
+                depth = float(np.ptp(bore.corners @ bore.axis)) if floors == 1 else None
+                yield _Round(part, around, 2 * bore.radius, bore.off, depth, floors > 1), _Round(against, inside, 2 * pin.radius, pin.off)
 
 
 def _elsewhere(joined: _Joined) -> Iterator[tuple[str, str]]:
@@ -316,24 +396,37 @@ def _goes_into(pin: Face, bore: Face) -> bool:
     return min(high, end) > max(low, start)
 
 
-def _depth(bore: Face, faces: Iterable[Face]) -> float | None:
-    """Return the depth of a bore that a floor closes at one end [mm], else None."""
+def _floors(bore: Face, faces: Iterable[Face]) -> int:
+    """Return at how many ends a whole floor closes a bore."""
     if bore.kind != "cylinder":
-        return None
-    low, high = along(bore, bore.axis)
+        return 0
+    ends = along(bore, bore.axis)
+    closed = set()
     for face in faces:
         if face.kind == "plane" and np.linalg.norm(np.cross(face.axis, bore.axis)) < TILT:
             height = float(face.point @ bore.axis)
             reach = np.linalg.norm(np.cross(face.corners.reshape(-1, 3) - bore.point, bore.axis), axis=1).max()
-            if min(abs(height - low), abs(height - high)) < _ROUNDING_MM and reach < bore.radius + _ROUNDING_MM:
-                return high - low
-    return None
+            if reach < bore.radius + _ROUNDING_MM:
+                closed |= {end for end in ends if abs(height - end) < _ROUNDING_MM}
+    return len(closed)
 
 
 def _stated_by(surface: _Round, dimensions: Mapping[str, float]) -> tuple[str, int] | None:
-    """Return the dimension that states a diameter, with or without a clearance: 1 as a diameter, 2 as a radius; None if none does."""
+    """Return the dimension that states a diameter, with or without a clearance: 1 as a diameter, 2 as a radius; None if none does.
+
+    Of several, that whose name suits best.
+    """
     allowed = 2 * surface.off + _ROUNDING_MM
-    return next(((name, times) for name, times, stated in _diameters(dimensions) if abs(surface.diameter - stated) <= allowed), None)
+    several = [(name, times) for name, times, stated in _diameters(dimensions) if abs(surface.diameter - stated) <= allowed]
+    return min(several, key=lambda one: _unsuitable(surface, *one), default=None)
+
+
+def _unsuitable(surface: _Round, name: str, times: int) -> int:
+    """Return how badly a dimension's name suits a diameter that it states once or twice, or the width of a slot or tongue."""
+    is_flat, of_round, of_flat = surface.what in {"slot", "tongue"}, bool(_OF_ROUND.search(name)), bool(_OF_FLAT.search(name))
+    if is_flat:
+        return (times - 1) + 2 * (of_round and not of_flat)
+    return (times != (2 if "radius" in name else 1)) + 2 * (of_flat and not of_round)
 
 
 def _is_given(length: float, dimensions: Mapping[str, float]) -> bool:

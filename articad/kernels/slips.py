@@ -21,6 +21,7 @@ from articad.plan.amending import amended
 from articad.plan.brief import brief
 from articad.plan.expressions import parse
 from articad.plan.fields import lengths_in
+from articad.plan.remedies import digits
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.plan.usage import CLEARANCE, SIZE
@@ -36,6 +37,8 @@ _TRIALS: Final = 24  # builds of one failure
 _TOLD: Final = 4  # numbers of a hint
 LONGEST: Final = 5.0
 """A corrected length over the longest other one of its part, at most."""
+_LONGEST_IF_ROUNDER: Final = 20.0
+_ROUNDER: Final = 2  # significant digits fewer: the number was given in the other unit
 
 
 class _Slip(NamedTuple):
@@ -116,7 +119,8 @@ def _heals(slip: _Slip, resolved: ResolvedPlan, name: str, script: bytes, kernel
 def _slips(resolved: ResolvedPlan, name: str, *, signs_only: bool, only_odd: bool) -> Iterator[_Slip]:
     """Yield numbers that shape a part and may be slips: of sign, then of unit, the shortest first, as far as the part's proportions allow.
 
-    With `only_odd`, the shortest one alone may be too short, and the longest too long.
+    With `only_odd`, the shortest one alone may be too short, and the longest too long. Numbers that become much rounder are tried first, and
+    may give the part other proportions.
     """
     part = resolved.parts[name]
     lengths = lengths_in(part.dimensions)
@@ -127,14 +131,20 @@ def _slips(resolved: ResolvedPlan, name: str, *, signs_only: bool, only_odd: boo
     if signs_only:
         return
     ascending = sorted(numbers.items(), key=lambda item: abs(item[1][0]))
-    for address, (value, driven) in ascending:
+    for address, (value, driven) in sorted(ascending, key=lambda item: not any(_is_rounder(item[1][0], factor) for factor in UNITS)):
         longest = longest_other(lengths, driven)
         is_suspect = not only_odd or abs(value) == abs(ascending[0][1][0])
         for factor, unit in UNITS.items():
-            if is_suspect and 0.0 < abs(value) * factor <= LONGEST * longest:
+            is_rounder = _is_rounder(value, factor)
+            most = (_LONGEST_IF_ROUNDER if is_rounder else LONGEST) * longest
+            if (is_suspect or is_rounder) and 0.0 < abs(value) * factor <= most:
                 yield _Slip(address, value, value * factor, f"were {unit} given?", driven)
             if abs(value) > longest > 0.0 and unit == "metres":
                 yield _Slip(address, value, value / factor, "were micrometres given?", driven)
+
+
+def _is_rounder(value: float, factor: float) -> bool:
+    return digits(value) - digits(value * factor) >= _ROUNDER
 
 
 def longest_other(lengths: Mapping[str, float], driven: Collection[str]) -> float:

@@ -539,7 +539,7 @@ PLAN_KINDS: Final = (
         _is_travel,
     ),
     _kind("joint_fixed", "a moving joint is fixed", GRAPH | PLACE | LOOPS | COUPLED, _joint, "fixed", _fixed, _moves),
-    _kind("mate_opposed", "the other mate", PLACE, _joint, "the other mate", _opposite, _any),
+    _kind("mate_opposed", "the other mate", _PLACED, _joint, "the other mate", _opposite, _any),
     _kind("parent_wrong", "a joint to another part", GRAPH | PLACE | LOOPS, _other_parent),
     _kind("joint_missing", "a joint is missing", GRAPH | APART | LOOPS | COUPLED, _missing_joint),
     _kind(

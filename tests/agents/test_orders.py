@@ -176,7 +176,7 @@ def build(part):
 
 
 def wheel_on_a_pin(
-    pin: str = 'd["pin"] - d["clearance"]', /, fit: dict[str, Any] | None = None, **dimensions: float
+    pin: str = 'd["pin"] - d["clearance"]', /, fit: dict[str, Any] | None = None, wheel: str = WHEEL, **dimensions: float
 ) -> tuple[dict[str, Any], Assembly]:
     """A wheel whose bore has a radius of 4, on a pin with a radius of 4 less a clearance of 0.2."""
     own = {"plate": 5, "pin": 4, "clearance": 0.2, "radius": 12, "bore": 4} | dimensions
@@ -193,7 +193,7 @@ def wheel_on_a_pin(
     parts[1]["rest_pose"] = {"at": [0, 0, 0]}
     turn = {"name": "turn", "type": "revolute", "parent": "post.axis", "child": "wheel.axis", "angle_deg": "endless"}
     document = plan("wheel", parts, turn | {"fit": fit or {"gap_mm": [0.1, 0.3], "contact": "forbidden"}})
-    scripts = {"post": POST.replace("PIN", pin), "wheel": WHEEL}
+    scripts = {"post": POST.replace("PIN", pin), "wheel": wheel}
     made = Assembly.from_plan(AssemblyPlan.from_json(document), scripts, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1)
     return document, made
 
@@ -231,6 +231,18 @@ def test_a_clearance_that_a_pin_shows_was_not_left_out() -> None:
     assert "parts.wheel.dimensions.bore to 4," in found[0].hint
 
 
+@pytest.mark.parametrize("depth", [0.6, 1.0, 3.0])
+def test_a_bore_that_is_closed_at_both_ends_is_its_authors(depth: float) -> None:
+    """Its depth may be one that dimensions give."""
+    _, made = wheel_on_a_pin(
+        wheel=WHEEL.replace('Cylinder(d["bore"], 6', f'Pos(0, 0, 1) * Cylinder(d["bore"], {depth}').replace("Cylinder\n", "Cylinder, Pos\n")
+    )
+    found = examine(made).findings.errors
+
+    assert {(finding.route, finding.where) for finding in found} == {("code", "parts.wheel")}
+    assert "closed at both ends" in found[0].hint
+
+
 def test_each_change_that_a_hint_offers_for_a_required_contact_ends_the_finding() -> None:
     document, made = wheel_on_a_pin(fit={"gap_mm": [0, 0.3], "contact": "required"})
     (found,) = [finding for finding in examine(made).findings.errors if finding.code.startswith("E_FIT")]
@@ -241,3 +253,66 @@ def test_each_change_that_a_hint_offers_for_a_required_contact_ends_the_finding(
         own = {key: value for part in plan["parts"] for key, value in part["dimensions"].items()}
         _, again = wheel_on_a_pin(fit=plan["joints"][0]["fit"], **own)
         assert examine(again).findings.ok, plan["joints"]
+
+
+# A carriage that slides on a rail. The cone on it is a surface that nothing measures.
+RAIL = """
+from build123d import Box
+
+def build(part):
+    d = part.dimensions
+    return Box(200, d["width"], d["height"]), dict(part.connectors)
+"""
+CARRIAGE = """
+from build123d import Box, Cone, Pos
+
+def build(part):
+    d = part.dimensions
+    return Box(40, 40, 20) + Pos(0, 0, 12) * Cone(8, 4, 6) - Box(41, d["slot"], d["opening"]), dict(part.connectors)
+"""
+
+
+def carriage_on_a_rail(
+    carriage: str = CARRIAGE, gap: tuple[float, float] = (0.1, 0.3), **dimensions: float
+) -> tuple[dict[str, Any], Assembly]:
+    """A rail 12 mm wide in a slot of 12.4 mm."""
+    own = {"width": 12, "height": 10, "slot": 12.4, "opening": 10.4} | dimensions
+    way = {"z": [1, 0, 0], "x": [0, 0, 1], "o": [0, 0, 0], "label": "way", "name": "way"}
+    parts = [
+        {"name": name, "description": name, "dimensions": {key: own[key] for key in keys}, "connectors": [way]}
+        for name, keys in {"rail": ("width", "height"), "carriage": ("slot", "opening")}.items()
+    ]
+    parts[1]["rest_pose"] = {"at": [0, 0, 0]}
+    joint = {"name": "slide", "type": "slider", "parent": "rail.way", "child": "carriage.way", "travel_mm": [-50, 50]}
+    document = plan("slide", parts, joint | {"fit": {"gap_mm": list(gap), "contact": "forbidden"}})
+    scripts = {"rail": RAIL, "carriage": carriage}
+    made = Assembly.from_plan(AssemblyPlan.from_json(document), scripts, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1)
+    return document, made
+
+
+def test_a_carriage_as_it_was_ordered_has_no_fault() -> None:
+    assert examine(carriage_on_a_rail()[1]).findings.ok
+
+
+@pytest.mark.parametrize("wrong", [{"width": 15}, {"width": 13.1}, {"slot": 9.92}, {"slot": 11.5}, {"gap": (0.5, 2)}], ids=str)
+def test_slots_and_tongues_as_wide_as_they_were_ordered_are_the_designers_with_numbers_that_mend_them(wrong: dict[str, Any]) -> None:
+    document, made = carriage_on_a_rail(**wrong)
+    found = examine(made).findings.errors
+
+    assert {finding.route for finding in found} == {"design"}
+    (fit,) = [finding for finding in found if finding.code.startswith("E_FIT")]
+    changed = [changed for changed in followed(fit, document) if changed != document]
+    assert changed
+    for other in changed:
+        own = {key: value for part in other["parts"] for key, value in part["dimensions"].items()}
+        if wrong.get("gap") is None or other["joints"] != document["joints"]:
+            assert examine(carriage_on_a_rail(gap=tuple(other["joints"][0]["fit"]["gap_mm"]), **own)[1]).findings.ok, own
+
+
+@pytest.mark.parametrize("aside", [1.7, -3.1, 0.9])
+def test_a_slot_beside_its_way_is_its_authors(aside: float) -> None:
+    _, made = carriage_on_a_rail(CARRIAGE.replace("- Box(41", f"- Pos(0, {aside}, 0) * Box(41"))
+    found = examine(made).findings.errors
+
+    assert {(finding.route, finding.where) for finding in found} == {("code", "parts.carriage")}
+    assert f"the slot is {abs(aside):.4g} mm beside the axis" in found[0].hint

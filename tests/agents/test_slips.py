@@ -70,6 +70,27 @@ def test_a_number_that_heals_the_script_is_asked_of_the_designer(slip: dict[str,
         assert said in finding.hint
 
 
+LEAF = """
+from build123d import Align, Box, Pos
+
+def build(part):
+    d = part.dimensions
+    low = (Align.MIN,) * 3
+    return Box(d["width"], 20, d["height"], align=low) + Pos(d["width"] - 1, 0, d["pin_z"]) * Box(9, d["pin"], d["pin"], align=low), {}
+"""
+
+
+@pytest.mark.parametrize("height", [900, 1250, 2000])
+def test_a_number_that_becomes_round_in_inches_is_asked_first(height: int) -> None:
+    """The pin hangs beside a leaf that is too short; a thick pin would reach it as well, but nobody means 127 mm."""
+    sizes = {"width": 390, "height": round(height / 25.4, 6), "pin_z": 100, "pin": 5}
+    document = plan().to_json()
+    document["parts"][0]["dimensions"] = sizes
+    for finding in failure(AssemblyPlan.from_json(document), LEAF):
+        assert finding.route == "design"
+        assert finding.hint.startswith(f"The script of step builds if parts.step.dimensions.height is {height} instead of")
+
+
 @pytest.mark.parametrize(
     "script",
     [PARTED, STEP.replace('d["wall"]', 'd["walls"]'), STEP.replace("return shape", "return None or shap")],
