@@ -2,17 +2,16 @@
 
 Decided by proof, from the bores, pins, sockets and balls of joints and from the probe of dimensions. A script departs
 
-- if a dimension of its part has no effect, unless the script names it and it has one once a number of the plan that is far out of proportion
-  is a thousandth: what the dimension sizes is then hidden or cut away by what that number sizes;
+- if a dimension of its part has no effect;
 - if its part alone has nothing round about the axis of a joint, or has its bore or pin beside it;
 - if a bore or pin that makes a joint has a diameter that none of its dimensions states;
 - if it alone is ordered with a clearance, and the surfaces of both parts touch where a fit demands a gap;
 - if such a bore takes its pin, but is closed at a depth that its dimensions do not give, or at both ends, so that no pin could go in;
-- if the slot or the tongue of a slider, each as wide as its dimensions state and with play, lies beside the other at a distance that its
-  dimensions do not give;
+- if of the slot and the tongue of a slider, which would have play, one alone lies beside the axis at a distance that no dimension states;
 - if its shape, mirrored, turned or shifted as a whole, has no fault (`misplaced`).
 
-What else is wrong about such a part may follow from that, so it waits for the script. A fault of two parts of which neither departs follows
+It does not depart if it follows its order once a number of the plan that is far out of proportion is a thousandth of what it is: what that
+number sizes hides or cuts away the rest. What else is wrong about a part that departs may follow from that, so it waits for the script. A fault of two parts of which neither departs follows
 from the orders, so it goes to the designer. All faults of two parts go to the same author. Where a joint without
 bore and pin has faces that are neither planes, cylinders nor spheres, and no slot and tongue as wide as their dimensions state, departures
 cannot be measured: its faults stay open, but a fit goes to the designer if the overlap at rest of its parts has a root cause and goes there.
@@ -25,7 +24,7 @@ import math
 import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Final, NamedTuple, Self
+from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 
@@ -45,7 +44,7 @@ from articad.realisation.bores import TILT, along, beside
 from articad.realisation.sides import Sides, sides
 from articad.realisation.slots import Between, Slot, slots_of
 
-__all__ = ["HELD", "addressed", "source_of"]
+__all__ = ["HELD", "addressed", "as_built", "source_of"]
 
 _FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
 HELD: Final = frozenset({"W_JOINT_NOT_MADE", "W_JOINT_PARTLY_MADE", "W_JOINT_LEAVES", "W_JOINT_SHORT"})
@@ -58,6 +57,8 @@ _BESIDE: Final = 2.0  # distance from the joint's axis over the diameter: farthe
 _ALIKE: Final = 0.3  # difference of radii, as a share of the larger
 _ROUNDING_MM: Final = 0.005  # of a diameter
 _PLAY_MM: Final = 0.02  # a smaller clearance is none
+_BINDING_MM: Final = 0.02  # between half the difference of two widths and a gap that was measured: this pair makes the gap
+_LOOSE: Final = 0.05  # play of a tongue in its slot, over its width
 _ASIDE_MM: Final = 0.05  # of a tongue beside its slot, beyond their play
 _OUT_OF_PROPORTION: Final = 5.0  # a length over the longest other one of its part, or a clearance over the shortest one
 _OF_ROUND: Final = re.compile(r"radius|diameter|bore|hole|pin|shaft|arbor|axle|spigot|socket|ball|thread")
@@ -120,6 +121,8 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
         return Findings(several)
     joined = [_Joined.of(scene, joint) for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
     departed = _touching(several, assembly.resolved, joined) | _departed(assembly, assembly.resolved, joined)
+    joints = [one.joint for one in joined]
+    departed = {source: why for source, why in departed.items() if not _follows_otherwise(source, assembly, assembly.resolved, joints)}
     open_ones = [one for one in several if _is_open(one, assembly.resolved, departed)]
     doubted = {name for name, part in assembly.realised.items() if part.findings.of("W_SCALE")}
     if open_ones and (found := misplaced(assembly, scene, _sources(assembly.resolved), open_ones, verdicts, doubted=doubted)) is not None:
@@ -200,7 +203,7 @@ def _departed(assembly: Assembly, resolved: ResolvedPlan, joined: Sequence[_Join
     found: dict[str, str] = {}
     for source in sorted({source_of(name, resolved) for one in joined for name in one.parts}):
         unused = assembly.realised[source].findings.of("W_DIMENSION_UNUSED")
-        if unused and not (_is_named(unused[0]) and _is_hidden(unused[0], assembly, resolved, source)):
+        if unused:
             found[source] = f"{source} does not follow its dimension {unused[0].where.rsplit('.', 1)[-1]!r}."
     for one in joined:
         for part, reason in _elsewhere(one) if not one.fits else ():
@@ -226,19 +229,16 @@ def _departed(assembly: Assembly, resolved: ResolvedPlan, joined: Sequence[_Join
     return found
 
 
-def _is_named(unused: Finding) -> bool:
-    """Return whether the script names a dimension that has no effect."""
-    return "does not name it" not in unused.message
-
-
-def _is_hidden(unused: Finding, assembly: Assembly, resolved: ResolvedPlan, source: str) -> bool:
-    """Return whether a dimension has an effect once a number of the plan that is far out of proportion is a thousandth of what it is."""
+def _follows_otherwise(source: str, assembly: Assembly, resolved: ResolvedPlan, joints: Sequence[Joint]) -> bool:
+    """Return whether a script departs no more once a number of the plan that is far out of proportion is a thousandth of what it is."""
     for address, value in _out_of_proportion(resolved, source):
         try:
             other = assembly.with_changes({address: value / 1000.0})
         except (ArticadError, ValueError):
             continue
-        if unused.where not in {finding.where for finding in other.realised[source].findings.of("W_DIMENSION_UNUSED")}:
+        assert other.resolved is not None
+        scene, names = other.scene(), {joint.name for joint in joints}
+        if source not in _departed(other, other.resolved, [_Joined.of(scene, joint) for joint in other.joints if joint.name in names]):
             return True
     return False
 
@@ -256,12 +256,12 @@ def _out_of_proportion(resolved: ResolvedPlan, source: str) -> Iterator[tuple[st
 def _aside(joined: _Joined, resolved: ResolvedPlan) -> Iterator[tuple[Between, str]]:
     """Yield the slot or the tongue of a slider that alone lies at a distance from the axis which its dimensions do not give."""
     for slot in joined.slots:
-        if not 0.0 <= slot.play < slot.shift - _ASIDE_MM or not _are_stated(slot, resolved):
-            continue  # a tongue that is too thick may well lie beside a slot on one side
+        if not 0.0 <= slot.play < min(slot.shift - _ASIDE_MM, _LOOSE * slot.tongue.width):
+            continue  # a tongue that is too thick may well lie beside a slot on one side, and in a far wider one it may lie anywhere
         strange = [
             (side, what)
             for side, what in ((slot.slot, "slot"), (slot.tongue, "tongue"))
-            if not any(_is_given(times * abs(side.middle), resolved.parts[source_of(side.part, resolved)].dimensions) for times in (1, 2))
+            if not _is_length(abs(side.middle), resolved.parts[source_of(side.part, resolved)].dimensions)
         ]
         if len(strange) == 1:
             ((side, what),) = strange
@@ -269,8 +269,9 @@ def _aside(joined: _Joined, resolved: ResolvedPlan) -> Iterator[tuple[Between, s
 
 
 def _are_stated(slot: Slot, resolved: ResolvedPlan) -> bool:
-    """Return whether the dimensions of both parts state how wide slot and tongue are."""
-    return all(_stated_by(each, resolved.parts[source_of(each.part, resolved)].dimensions) is not None for each in _prismatic(slot))
+    """Return whether the dimensions of both parts give how wide slot and tongue are, such as a width less two walls."""
+    sides = (slot.slot, slot.tongue)
+    return all(_is_given(side.width, resolved.parts[source_of(side.part, resolved)].dimensions, twice=True) for side in sides)
 
 
 def _prismatic(slot: Slot) -> tuple[_Round, _Round]:
@@ -321,9 +322,12 @@ def _fitting(finding: Finding, joined: _Joined, fit: Fit, resolved: ResolvedPlan
     if finding.value is None or (fit.gap_max is None and fit.contact == "forbidden"):
         return ""
     least, most = fit.gap_min or 0.0, fit.gap_max
+    several = joined.fits or [_prismatic(slot) for slot in joined.slots]
+    value = finding.value
+    binding = [(around, inside) for around, inside in several if abs((around.diameter - inside.diameter) / 2 - value) < _BINDING_MM]
     meant = 0.0 if fit.contact == "required" else least if most is None else (least + most) / 2
     offers = []
-    for bore, pin in joined.fits or [_prismatic(slot) for slot in joined.slots]:
+    for bore, pin in binding or several:
         for surface, diameter in ((bore, pin.diameter + 2 * meant), (pin, bore.diameter - 2 * meant)):
             source = source_of(surface.part, resolved)
             stated = _stated_by(surface, resolved.parts[source].dimensions)
@@ -331,13 +335,25 @@ def _fitting(finding: Finding, joined: _Joined, fit: Fit, resolved: ResolvedPlan
                 name, times = stated
                 value = float(resolved.parts[source].dimensions[name]) + (diameter - surface.diameter) / times
                 offers.append(f"parts.{source}.dimensions.{name} to {value:.6g}")
-    if finding.code == "E_FIT_CONTACT":
-        if fit.contact == "required" and (most is None or finding.value <= most):
-            offers.append("contact to 'allowed' if the gap is meant as it is")
-    elif finding.value > 0.0:
-        as_it_is = [min(least, math.floor(100 * finding.value) / 100), max(most or 0.0, math.ceil(100 * finding.value) / 100)]
-        offers.append(f"{finding.where}.gap_mm to {as_it_is} if the gap is meant as it is")
+    declared = as_built(finding, fit)
+    if "contact" in declared:
+        offers.append(f"contact to {declared['contact']!r} if the gap is meant as it is")
+    elif declared:
+        offers.append(f"{finding.where}.gap_mm to {declared['gap_mm']} if the gap is meant as it is")
     return f"Set {', or '.join(dict.fromkeys(offers))}." if offers else ""
+
+
+def as_built(finding: Finding, fit: Fit) -> dict[str, Any]:
+    """Return the fields of a fit that declare a gap as it was measured; empty if the parts overlap or may not touch."""
+    least, most = fit.gap_min or 0.0, fit.gap_max
+    if finding.value is None or (most is None and fit.contact == "forbidden"):
+        return {}
+    if finding.code == "E_FIT_CONTACT":
+        return {"contact": "allowed"} if fit.contact == "required" and (most is None or finding.value <= most) else {}
+    if finding.value <= 0.0:
+        return {}
+    low, high = math.floor(100 * finding.value) / 100, math.ceil(100 * finding.value) / 100
+    return {"gap_mm": [min(least, low), max(most or 0.0, high)]}
 
 
 def _mating(both: Sides) -> Iterator[tuple[_Round, _Round]]:
@@ -425,15 +441,20 @@ def _unsuitable(surface: _Round, name: str, times: int) -> int:
     """Return how badly a dimension's name suits a diameter that it states once or twice, or the width of a slot or tongue."""
     is_flat, of_round, of_flat = surface.what in {"slot", "tongue"}, bool(_OF_ROUND.search(name)), bool(_OF_FLAT.search(name))
     if is_flat:
-        return (times - 1) + 2 * (of_round and not of_flat)
-    return (times != (2 if "radius" in name else 1)) + 2 * (of_flat and not of_round)
+        return (times != 1) + (0 if of_flat else 2 if of_round else 1)
+    return (times != (2 if "radius" in name else 1)) + (0 if of_round else 2 if of_flat else 1)
 
 
-def _is_given(length: float, dimensions: Mapping[str, float]) -> bool:
-    """Return whether a length is that of a dimension, or the sum or difference of two."""
+def _is_given(length: float, dimensions: Mapping[str, float], *, twice: bool = False) -> bool:
+    """Return whether a length is that of a dimension, or the sum or difference of two, each perhaps taken twice."""
     stated = np.array(list(lengths_in(dimensions).values()))
-    terms = np.concatenate([[0.0], stated, -stated])
+    terms = np.concatenate([[0.0], stated, -stated, *((2 * stated, -2 * stated) if twice else ())])
     return bool((np.abs(terms[:, None] + terms - length) < _ROUNDING_MM).any())
+
+
+def _is_length(distance: float, dimensions: Mapping[str, float]) -> bool:
+    """Return whether a distance is zero, that of a dimension or half of it."""
+    return distance < _ROUNDING_MM or any(abs(times * distance - value) < _ROUNDING_MM for value in dimensions.values() for times in (1, 2))
 
 
 def _diameters(dimensions: Mapping[str, float]) -> Iterator[tuple[str, int, float]]:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Final
 
-from articad.agents.orders import source_of
+from articad.agents.orders import as_built, source_of
 from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
@@ -40,6 +40,7 @@ _HALVINGS: Final = 6  # of the step between a free pose and the next one
 _MARGIN: Final = 0.01  # of a range: distance from the pose at which parts meet
 _SHORT: Final = 0.05  # of a range: a shorter one is no motion
 _DECIMALS: Final = 4  # of mm in a change
+_FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
 _SOUGHT: Final = frozenset({"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"}) | {
     "E_FLOATING",
     "E_NOT_TOUCHING",
@@ -49,6 +50,8 @@ _SOUGHT: Final = frozenset({"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION
 
 def with_trials(findings: Findings, assembly: Assembly, examine: Examine) -> Findings:
     """Return findings of which the first for the designer also states single changes of the plan that end all of them, if there are any.
+
+    Then all of them go to the designer, unless these only declare fits as they are built.
 
     Args:
         findings: Of an examination of the assembly.
@@ -63,7 +66,9 @@ def with_trials(findings: Findings, assembly: Assembly, examine: Examine) -> Fin
     if not changes:
         return findings
     told = replace(asked[0], hint=f"{offered(changes, len(serious))} {asked[0].hint}")
-    return Findings(told if finding is asked[0] else finding for finding in findings)
+    is_cause = any(".fit." not in address for change in changes for address in change)  # a fit declared as it is built explains nothing
+    whole = [replace(finding, route="design") if is_cause and finding.code in _SOUGHT else finding for finding in findings]
+    return Findings([told if finding is asked[0] else other for finding, other in zip(findings, whole, strict=True)])
 
 
 def _healing(asked: Sequence[Finding], assembly: Assembly, resolved: ResolvedPlan, examine: Examine) -> Iterator[Changes]:
@@ -100,6 +105,8 @@ def _candidates(asked: Sequence[Finding], assembly: Assembly, resolved: Resolved
     """Yield changes, and whether parts must be built for them: of numbers that shape the parts at fault, then of motions."""
     colliding = [finding for finding in asked if finding.code == "E_MOTION_COLLISION"]
     at_rest = [finding for finding in asked if finding.code != "E_MOTION_COLLISION" and not finding.pose]
+    if declared := _declared(asked, assembly, resolved):
+        yield declared, False
     if at_rest:
         pairs = [set(finding.parts) for finding in at_rest]
         between = [joint.name for joint in assembly.joints if {joint.parent, joint.child} in pairs]
@@ -109,6 +116,21 @@ def _candidates(asked: Sequence[Finding], assembly: Assembly, resolved: Resolved
     if colliding and not at_rest:
         yield from ((change, False) for change in _motions(colliding, assembly, resolved))
         yield from ((change, True) for change in itertools.islice(_units(colliding, resolved), _BUILDS))
+
+
+def _declared(asked: Sequence[Finding], assembly: Assembly, resolved: ResolvedPlan) -> Changes:
+    """Return the change that declares all fits as they were built; empty if more than fits is at fault, or parts of a fit overlap."""
+    whole, change = resolved.plan.to_json(), dict[str, Any]()
+    for finding in asked:
+        joint = finding.where.removeprefix("joints.").removesuffix(".fit")
+        fields = as_built(finding, assembly.fits[joint]) if finding.code in _FITS and joint in assembly.fits else {}
+        if not fields:
+            return {}
+        for key, value in fields.items():
+            address = f"joints.{_stated(whole, joint)}.fit.{key}"
+            other = change.get(address, value)
+            change[address] = value if key == "contact" else [min(value[0], other[0]), max(value[1], other[1])]
+    return change
 
 
 def _units(asked: Sequence[Finding], resolved: ResolvedPlan) -> Iterator[Changes]:

@@ -13,7 +13,7 @@ from articad.plan.amending import amended
 from articad.plan.schema import AssemblyPlan
 from articad_bench.obeying import followed
 from tests.agents import stories
-from tests.agents.test_orders import plan, wheel_on_a_pin
+from tests.agents.test_orders import carriage_on_a_rail, plan, wheel_on_a_pin
 
 
 def told(assembly: Assembly) -> Finding:
@@ -33,6 +33,23 @@ def test_a_dimension_in_inches_is_told_in_millimetres(name: str) -> None:
     own = {key: value for part in first["parts"] for key, value in part["dimensions"].items()}
     assert own == {"plate": 5, "pin": 4, "clearance": 0.2, "radius": 12, "bore": 4}
     assert examine(wheel_on_a_pin(**own)[1]).findings.ok
+
+
+@pytest.mark.parametrize("gap", [[1, 2], [0.35, 3], [0.01, 0.15]], ids=str)
+@pytest.mark.parametrize("kind", ["bore", "slot"])
+def test_a_fit_that_the_parts_do_not_keep_is_told_as_it_was_built(kind: str, gap: list[float]) -> None:
+    if kind == "bore":
+        document, made = wheel_on_a_pin(fit={"gap_mm": gap, "contact": "forbidden"})
+    else:
+        document, made = carriage_on_a_rail(gap=(gap[0], gap[1]))
+    first = followed(told(made), document)[0]["joints"][0]["fit"]["gap_mm"]
+
+    assert first[0] <= 0.2 <= first[1]
+    assert gap[0] in first or gap[1] in first  # the bound that was kept stays
+    if kind == "bore":
+        assert examine(wheel_on_a_pin(fit={"gap_mm": first, "contact": "forbidden"})[1]).findings.ok
+    else:
+        assert examine(carriage_on_a_rail(gap=(first[0], first[1]))[1]).findings.ok
 
 
 # A sleeve on a square rail. The rail has a collar on one side, as far from the sleeve as `free`.
