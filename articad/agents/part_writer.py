@@ -80,8 +80,8 @@ class Attempt:
     @property
     def is_of_design(self) -> bool:
         """Whether the specification is at fault, so that its author cannot mend it."""
-        errors = () if self.error is None else self.error.findings.errors
-        return bool(errors) and all(finding.route == "design" for finding in errors)
+        found = () if self.error is None else self.error.findings.errors or self.error.findings
+        return bool(found) and all(finding.route == "design" for finding in found)
 
     @property
     def signature(self) -> object:

@@ -20,9 +20,10 @@ from articad.findings import Finding, Findings
 from articad.geometry.part import Part, Solid
 from articad.kernels.cache import BuildCache
 from articad.kernels.contract import dimension_findings, drift_findings, lengths_of, primary_connector, seating
-from articad.kernels.features import bore_findings, feature_findings
+from articad.kernels.features import Order, bore_findings, feature_findings
 from articad.kernels.results import read_mesh
 from articad.plan.brief import brief, brief_digest, build_digest
+from articad.plan.fields import lengths_in
 from articad.plan.resolve import ResolvedPart, ResolvedPlan
 
 __all__ = ["BuildCache", "BuiltPart", "Inspect", "PartKernel", "build_part", "mirror_part", "realise"]
@@ -205,9 +206,18 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
     known = {(finding.code, finding.where) for finding in built.findings}
     drift = drift_findings(resolved_part, built.brief, built.connectors, built.solid.bbox)
     name = resolved_part.name
-    features = feature_findings(name, resolved_part.connectors, solid.mesh) + bore_findings(name, solid.mesh, lengths_of(resolved_part))
+    features = feature_findings(name, resolved_part.connectors, solid.mesh, _order(resolved_part))
+    features += bore_findings(name, solid.mesh, lengths_of(resolved_part))
     found = drift + features + dimension_findings(resolved_part, solid.bbox)
     return part, Findings(finding for finding in found if (finding.code, finding.where) not in known)
+
+
+def _order(part: ResolvedPart) -> Order | None:
+    """Return what decides whether a connector or the feature beside it is at fault; None for a derived part, which has neither of its own."""
+    if part.derivation is not None:
+        return None
+    stated = {spec.name: part.T_rest if spec.frame == "assembly" else SE3.identity() for spec in part.spec.connectors}
+    return Order(lengths_in(part.dimensions), stated)
 
 
 def finding_from_json(form: Mapping[str, Any]) -> Finding:

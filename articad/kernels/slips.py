@@ -11,17 +11,18 @@ import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from articad.errors import ArticadError, KernelError
 from articad.findings import Findings
-from articad.kernels.contract import drift_findings
-from articad.kernels.kernel import PartKernel
+from articad.kernels.contract import ENVELOPE_TOLERANCE, drift_findings
+from articad.kernels.features import FEATURES
+from articad.kernels.kernel import PartKernel, realise
 from articad.plan.amending import amended
 from articad.plan.brief import brief
 from articad.plan.expressions import parse
 from articad.plan.fields import lengths_in
-from articad.plan.remedies import digits
+from articad.plan.remedies import digits, offered
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.plan.usage import CLEARANCE, SIZE
@@ -73,6 +74,12 @@ def explained(error: KernelError, resolved: ResolvedPlan, name: str, script: byt
         The same error. Each of its findings then has the route of the designer, and a hint that states the number.
     """
     codes = {finding.code for finding in error.findings.errors}
+    if codes == {"E_ENVELOPE"} and (change := _exchanged(error.findings, resolved, name, script, kernel)):
+        hint = (
+            f"{offered([change], len(error.findings.errors))} With it, the script keeps its contract and has a feature at each connector."
+        )
+        error.findings = Findings(replace(one, route="design", hint=hint) if one.code == "E_ENVELOPE" else one for one in error.findings)
+        return error
     is_code = any(finding.message.startswith(_OF_SCRIPTS) for finding in error.findings)
     if not codes or not codes <= _OF_NUMBERS or is_code:
         return error
@@ -81,7 +88,7 @@ def explained(error: KernelError, resolved: ResolvedPlan, name: str, script: byt
     healing: list[_Slip] = []
     for slip in itertools.islice(_slips(resolved, name, signs_only=signs_only, only_odd=only_odd), _TRIALS):
         is_known = any(slip.driven <= other.driven and slip.question == other.question for other in healing)
-        if not is_known and _heals(slip, resolved, name, script, kernel):
+        if not is_known and _keeps({slip.address: slip.meant}, resolved, name, script, kernel):
             healing.append(slip)
         if len(healing) == _TOLD:
             break
@@ -94,13 +101,30 @@ def explained(error: KernelError, resolved: ResolvedPlan, name: str, script: byt
     return error
 
 
-def _heals(slip: _Slip, resolved: ResolvedPlan, name: str, script: bytes, kernel: PartKernel) -> bool:
-    """Return whether the script keeps its contract with the corrected number."""
+def _exchanged(findings: Findings, resolved: ResolvedPlan, name: str, script: bytes, kernel: PartKernel) -> dict[str, Any]:
+    """Return the envelope of the plan with its sides exchanged, if that is what the script builds, with a feature at each connector.
+
+    A part that was built in another plane has its features elsewhere; without any connector that orders one, the two cannot be told apart.
+    """
+    target, written = resolved.parts[name], resolved.parts[name].spec.envelope_mm
+    if target.envelope is None or written is None or not any(each.kind in FEATURES for each in target.connectors.values()):
+        return {}
+    wrong = {axis: one.value for one in findings.of("E_ENVELOPE") for axis in "xyz" if f"along {axis} " in one.message}
+    built = [wrong.get(axis) or side for axis, side in zip("xyz", target.envelope, strict=True)]
+    for order in itertools.permutations(range(3)):
+        if all(abs(target.envelope[at] - size) <= ENVELOPE_TOLERANCE * size for at, size in zip(order, built, strict=True)):
+            change = {f"parts.{target.spec.name}.envelope_mm": [written[at] for at in order]}
+            return change if _keeps(change, resolved, name, script, kernel, with_features=True) else {}
+    return {}
+
+
+def _keeps(
+    change: Mapping[str, Any], resolved: ResolvedPlan, name: str, script: bytes, kernel: PartKernel, *, with_features: bool = False
+) -> bool:
+    """Return whether the script keeps its contract after a change of the plan, and perhaps has a feature at each connector."""
     try:
-        plan = AssemblyPlan.from_json(amended(resolved.plan.to_json(), {slip.address: slip.meant}))
-        other = resolve(
-            plan, **{key: value for key, value in resolved.overrides.items() if not slip.address.startswith(f"parameters.{key}.")}
-        )
+        plan = AssemblyPlan.from_json(amended(resolved.plan.to_json(), change))
+        other = resolve(plan, **{key: value for key, value in resolved.overrides.items() if f"parameters.{key}.value" not in change})
         target, told = other.parts[name], brief(other, name)
         with scratch.folder("slip") as folder:
             built = kernel.build(
@@ -111,7 +135,7 @@ def _heals(slip: _Slip, resolved: ResolvedPlan, name: str, script: bytes, kernel
                 probe=False,
                 inspect=lambda connectors, bbox: drift_findings(target, told, connectors, bbox),
             )
-            return built.findings.ok
+            return built.findings.ok and not (with_features and realise(target, built)[1])
     except (ArticadError, ValueError):
         return False
 

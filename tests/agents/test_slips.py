@@ -91,6 +91,43 @@ def test_a_number_that_becomes_round_in_inches_is_asked_first(height: int) -> No
         assert finding.hint.startswith(f"The script of step builds if parts.step.dimensions.height is {height} instead of")
 
 
+BUSH = """
+from build123d import Align, Box, Cylinder, Plane, Rot
+
+def build(part):
+    d = part.dimensions
+    low = (Align.CENTER, Align.CENTER, Align.MIN)
+    shape = Box(d["wide"], d["deep"], d["high"], align=low) - Cylinder(d["bore"] / 2, d["high"], align=low)
+    return TURN * shape, dict(part.connectors)
+"""
+
+
+@pytest.mark.parametrize("turn", ["", "Rot(X=90)", "Rot(Y=90)", "Rot(Z=90)"])
+@pytest.mark.parametrize("sides", ["xyz", "zyx", "xzy", "yxz", "zxy"])
+def test_an_envelope_with_exchanged_sides_is_the_designers_and_a_turned_part_its_authors(sides: str, turn: str) -> None:
+    """The bore shows in which plane a part was built, if its sides are not turned about the bore."""
+    size = {"x": 40, "y": 60, "z": 10}
+    document = plan().to_json()
+    axis = {"name": "axis", "kind": "bore_axis", "o": [0, 0, 0], "z": [0, 0, 1], "x": [1, 0, 0], "label": "axis"}
+    document["parts"][0] |= {"dimensions": {"wide": 40, "deep": 60, "high": 10, "bore": 8}, "connectors": [axis]}
+    document["parts"][0]["envelope_mm"] = [size[side] for side in sides]
+    script = BUSH.replace("TURN * ", f"{turn} * " if turn else "")
+    try:
+        made = Assembly.from_plan(
+            AssemblyPlan.from_json(document), {"step": script}, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1
+        )
+        found = tuple(finding for finding in made.findings if finding.severity != "info")
+    except KernelError as error:
+        found = tuple(error.findings.errors)
+    wrong = {finding.route for finding in found}
+
+    if not turn:
+        assert wrong == ({"design"} if sides != "xyz" else set())
+        assert all('"parts.step.envelope_mm": [40, 60, 10]' in finding.hint.replace(".0", "") for finding in found)
+    elif turn != "Rot(Z=90)":
+        assert wrong == {"code"}
+
+
 @pytest.mark.parametrize(
     "script",
     [PARTED, STEP.replace('d["wall"]', 'd["walls"]'), STEP.replace("return shape", "return None or shap")],

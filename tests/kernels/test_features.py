@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -12,9 +13,10 @@ from numpy.random import default_rng
 
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
+from articad.findings import Finding
 from articad.geometry.faces import faces_of
 from articad.geometry.mesh import TriMesh
-from articad.kernels.features import bore_findings, feature_findings
+from articad.kernels.features import Order, bore_findings, feature_findings
 from articad.kernels.tessellation import tessellate
 
 SEEDS = range(8)
@@ -119,3 +121,29 @@ def test_a_sharp_inner_fillet_is_no_bore() -> None:
 
     assert any(face.kind == "cylinder" and face.hollow for face in faces_of(mesh))
     assert bore_findings("part", mesh).codes == ()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("frame", ["part", "assembly"])
+def test_of_a_connector_and_the_bore_beside_it_that_is_at_fault_which_no_dimension_puts_there(seed: int, frame: str) -> None:
+    """A tube at (x, y), where two dimensions put it. Either the connector or the tube is beside this place."""
+    draw = default_rng(seed)
+    x, y, off = (float(value) for value in draw.uniform(5, 50, 3).round(3))
+    lengths = {"x": x, "y": 2 * y, "height": 30.0}
+    there = SE3.from_translation((x, y, 0.0))
+    aside = SE3.from_translation((x + off, y, 0.0))
+    pose = place(seed) if frame == "assembly" else SE3.identity()
+    order = Order(lengths, {"at": pose})
+
+    def told(connector: SE3, shape: SE3, given: Order | None) -> Finding:
+        (finding,) = feature_findings("part", {"at": Connector("at", connector, kind="bore_axis")}, mesh_of(tube(seed), shape), given)
+        return finding
+
+    of_plan, of_script = told(aside, there, order), told(there, aside, order)
+    assert (of_plan.route, of_script.route) == ("design", "code")
+    assert f"{off:.4g} mm beside it" in of_plan.message
+    assert f"{off:.4g} mm beside it" in of_script.message
+    wanted = re.search(r"set o of part\.at to \((.*?)\)", of_plan.hint)
+    assert wanted
+    assert np.allclose([float(value) for value in wanted[1].split(",")], pose.apply(there.translation), atol=1e-3)
+    assert told(aside, there, None).route == "code"
