@@ -8,7 +8,8 @@ Decided by proof, from the bores, pins, sockets and balls of joints and from the
 - if it alone is ordered with a clearance, and the surfaces of both parts touch where a fit demands a gap;
 - if such a bore takes its pin, but is closed at a depth that its dimensions do not give, or at both ends, so that no pin could go in;
 - if of the slot and the tongue of a slider, which would have play, one alone lies beside the axis at a distance that no dimension states;
-- if its shape, mirrored, turned or shifted as a whole, has no fault (`misplaced`).
+- if its shape, mirrored, turned or shifted as a whole, has no fault (`misplaced`), and the faults are not those of a pin that is where it was
+  ordered and too thick for its bore.
 
 It does not depart if it follows its order once a number of the plan that is far out of proportion is a thousandth of what it is: what that
 number sizes hides or cuts away the rest. What else is wrong about a part that departs may follow from that, so it waits for the script. A fault of two parts of which neither departs follows
@@ -123,7 +124,8 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
     departed = _touching(several, assembly.resolved, joined) | _departed(assembly, assembly.resolved, joined)
     joints = [one.joint for one in joined]
     departed = {source: why for source, why in departed.items() if not _follows_otherwise(source, assembly, assembly.resolved, joints)}
-    open_ones = [one for one in several if _is_open(one, assembly.resolved, departed)]
+    too_thick = {one.parts for one in joined if any(inside.diameter > around.diameter + _ROUNDING_MM for around, inside in one.fits)}
+    open_ones = [one for one in several if _is_open(one, assembly.resolved, departed) and frozenset(one.parts) not in too_thick]
     doubted = {name for name, part in assembly.realised.items() if part.findings.of("W_SCALE")}
     if open_ones and (found := misplaced(assembly, scene, _sources(assembly.resolved), open_ones, verdicts, doubted=doubted)) is not None:
         departed[found.part] = (

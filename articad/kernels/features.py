@@ -24,6 +24,7 @@ __all__ = ["FEATURES", "Order", "bore_findings", "feature_findings"]
 NARROW_MM: Final = 0.5  # printers and common drills make no bore narrower than this
 DEEPEST: Final = 10.0  # its depth over its width
 _CLOSED: Final = 0.05  # sum of normals over the area: 0 for a whole cylinder, 0.64 for a half
+_HALF: Final = 0.6  # as above: more than half a cylinder
 _ROUNDING: Final = 0.02  # of a width that is measured on a mesh
 _ROUNDING_MM: Final = 0.005  # of a coordinate
 _AXES: Final = frozenset({"bore_axis", "shaft_axis"})
@@ -128,10 +129,14 @@ def _findings(part: str, connectors: Mapping[str, Connector], mesh: TriMesh, ord
 
 
 def _nearest(connector: Connector, faces: Sequence[Face]) -> _Beside | None:
-    """Return the closed cylinder parallel to a connector's axis that is nearest to it; None if there is none."""
+    """Return the cylinder parallel to a connector's axis that is nearest to it, of those that go round by more than half; None if there is none.
+
+    For a bore, it is hollow.
+    """
     found = []
     for face in faces:
-        if face.kind == "cylinder" and _is_upright(face) and _goes_round(face):
+        suits = face.kind == "cylinder" and (face.hollow or connector.kind != "bore_axis")
+        if suits and _is_upright(face) and _goes_round(face, _HALF):
             x, y = at_height(face, 0.0)
             found.append(_Beside(2 * face.radius, math.hypot(x, y), np.asarray(connector.frame.apply([x, y, 0.0]))))
     return min(found, key=lambda one: one.distance, default=None)
@@ -175,10 +180,10 @@ def _is_round(face: Face) -> bool:
     return face.kind == "other" and bool((points.min(axis=0) <= 0.0).all() and (points.max(axis=0) >= 0.0).all())
 
 
-def _goes_round(face: Face) -> bool:
+def _goes_round(face: Face, most: float = _CLOSED) -> bool:
     """Return whether a cylinder is closed: its normals cancel, those of a fillet do not."""
     normals = face.normals_of_twice_area
-    return float(np.linalg.norm(normals.sum(axis=0))) < _CLOSED * float(np.linalg.norm(normals, axis=1).sum())
+    return float(np.linalg.norm(normals.sum(axis=0))) < most * float(np.linalg.norm(normals, axis=1).sum())
 
 
 def _is_upright(face: Face) -> bool:

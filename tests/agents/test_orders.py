@@ -11,6 +11,7 @@ import pytest
 
 from articad.agents.evidence import examine
 from articad.agents.llm import Reply, Request, Scripted
+from articad.agents.misplaced import Misplaced
 from articad.agents.pipeline import generate
 from articad.assembly import Assembly
 from articad.plan.schema import AssemblyPlan
@@ -252,6 +253,48 @@ def test_each_change_that_a_hint_offers_for_a_required_contact_ends_the_finding(
         own = {key: value for part in plan["parts"] for key, value in part["dimensions"].items()}
         _, again = wheel_on_a_pin(fit=plan["joints"][0]["fit"], **own)
         assert examine(again).findings.ok, plan["joints"]
+
+
+@pytest.mark.parametrize("radius", [4.1, 4.4, 5.0])
+def test_a_pin_that_is_too_thick_was_not_built_elsewhere_though_it_would_be_clear_there(
+    radius: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The pin stands beside the plate's middle. On the other side it would touch nothing, so no such motion is tried."""
+    monkeypatch.setattr("articad.agents.orders.misplaced", lambda *_, **__: Misplaced("post", "mirrored at x = 0"))
+    post = """
+from build123d import Align, Box, Cylinder, Pos
+
+def build(part):
+    d = part.dimensions
+    plate = Pos(0, 0, -d["plate"]) * Box(80, 40, d["plate"], align=(Align.CENTER, Align.CENTER, Align.MIN))
+    pin = Pos(d["at"], 0, -1) * Cylinder(d["pin"], 9, align=(Align.CENTER, Align.CENTER, Align.MIN))
+    return plate + pin, dict(part.connectors)
+"""
+    axis = {"name": "axis", "z": [0, 0, 1], "x": [1, 0, 0], "o": [0, 0, 0.5], "label": "axis"}
+    parts = [
+        {
+            "name": "post",
+            "description": "post",
+            "dimensions": {"plate": 5, "pin": radius, "at": 20},
+            "connectors": [axis | {"o": [20, 0, 0.5]}],
+        },
+        {
+            "name": "wheel",
+            "description": "wheel",
+            "dimensions": {"radius": 12, "bore": 4},
+            "connectors": [axis | {"o": [0, 0, 0]}],
+            "rest_pose": {"at": [20, 0, 0.5]},
+        },
+    ]
+    turn = {"name": "turn", "type": "revolute", "parent": "post.axis", "child": "wheel.axis", "angle_deg": "endless"}
+    document = plan("crank", parts, turn | {"fit": {"gap_mm": [0.1, 0.3], "contact": "forbidden"}})
+    made = Assembly.from_plan(
+        AssemblyPlan.from_json(document), {"post": post, "wheel": WHEEL}, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1
+    )
+    found = examine(made).findings.errors
+
+    assert {finding.route for finding in found} == {"design"}
+    assert "parts.post.dimensions.pin to" in str(found[0].hint)
 
 
 # A carriage that slides on a rail. The cone on it is a surface that nothing measures.
