@@ -232,6 +232,35 @@ def test_a_clearance_that_a_pin_shows_was_not_left_out() -> None:
     assert "parts.wheel.dimensions.bore to 4," in found[0].hint
 
 
+COLLAR = """
+    collar = Pos(0, 0, d["collar"] / 10 - 1) * Cylinder(d["collar"], d["collar"], align=(Align.CENTER, Align.CENTER, Align.MAX))
+    return shape + collar, dict(part.connectors)
+"""
+
+
+def post_with_a_collar(collar: float, pin: str) -> Assembly:
+    """A collar below the wheel, which swallows the pin and the wheel if it is a thousand times as large."""
+    document, _ = wheel_on_a_pin()
+    document["parts"][0]["dimensions"]["collar"] = collar
+    head, _, _ = POST.replace("PIN", pin).rpartition("    return ")
+    body = head + "    shape = " + POST.replace("PIN", pin).rpartition("    return ")[2].partition(", dict(")[0] + COLLAR
+    return Assembly.from_plan(
+        AssemblyPlan.from_json(document), {"post": body, "wheel": WHEEL}, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1
+    )
+
+
+def test_a_dimension_that_a_number_out_of_proportion_hides_is_not_held_against_the_script() -> None:
+    assert examine(post_with_a_collar(6, 'd["pin"] - d["clearance"]')).findings.ok
+    made = post_with_a_collar(6000, 'd["pin"] - d["clearance"]')
+    assert made.realised["post"].findings.of("W_DIMENSION_UNUSED")
+    assert {finding.route for finding in examine(made).findings.errors} == {"design"}
+
+
+def test_a_dimension_that_a_script_ignores_is_held_against_it_whatever_the_proportions() -> None:
+    found = examine(post_with_a_collar(6000, "3.8")).findings.errors
+    assert {(finding.route, finding.where) for finding in found} == {("code", "parts.post")}
+
+
 @pytest.mark.parametrize("depth", [0.6, 1.0, 3.0])
 def test_a_bore_that_is_closed_at_both_ends_is_its_authors(depth: float) -> None:
     """Its depth may be one that dimensions give."""
