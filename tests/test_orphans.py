@@ -32,7 +32,7 @@ HANGS = "#!/bin/sh\nsleep 600 &\nsleep 600\n"
 START_S = 200.0  # for a command to be in the middle of its work, on a busy machine
 ALONE_S = 1.5  # of a command that starts no process, to be in the middle of its work on an idle machine
 AT_ONCE = 4  # commands: most of the time each of them waits for something
-SIGNALS: Final = (signal.SIGTERM, signal.SIGKILL, signal.SIGINT)
+SIGNALS: Final = (signal.SIGTERM, signal.SIGKILL, signal.SIGINT, signal.SIGHUP)
 
 
 class Line(NamedTuple):

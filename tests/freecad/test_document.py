@@ -7,6 +7,7 @@ import zipfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -96,6 +97,20 @@ def test_the_residuals_see_a_part_that_is_out_of_place() -> None:
 def test_the_same_assembly_gives_the_same_bytes() -> None:
     again = write_freecad(assembly("wardrobe"))
     assert again.files[again.main] == content("wardrobe")
+
+
+def test_the_solver_is_not_asked_while_a_document_is_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each placement is given, and the solver's time grows faster than the square of the number of joints. Who verifies asks it."""
+    asked, run = {}, FreeCAD.run
+
+    def heard(freecad: FreeCAD, program: Path, **more: Any) -> Any:
+        ended = run(freecad, program, **more)
+        asked[program.name] = "MbD:" in ended.said
+        return ended
+
+    monkeypatch.setattr(FreeCAD, "run", heard)
+    write_freecad(assembly("four_bar"))
+    assert asked == {"document.py": False, "examine.py": True}
 
 
 def test_the_file_is_visible_and_names_no_person_time_or_foreign_class() -> None:

@@ -27,6 +27,8 @@ _FIXED_MASS = "Mass when articad wrote the document; it does not follow the shap
 def main() -> None:
     """Read the job, write the document, report."""
     job = json.loads(Path("job.json").read_text())
+    # every placement is given, and the solver takes more than the square of the number of joints
+    App.ParamGet("User parameter:BaseApp/Preferences/Mod/Assembly").SetBool("SolveOnRecompute", False)
     writer = _Writer(job)
     report = writer.write()
     Path("report.json").write_text(json.dumps(report))
@@ -59,6 +61,7 @@ class _Writer:
         _text(self.assembly, "ArticadWritten", "", "The content of the document when articad wrote it", hidden=True)
         for part in self.job["parts"]:
             self._part(part)
+        self._group(self.assembly, list(self.parts.values()))
         for part in self.job["parts"]:
             if part["placed"]:
                 self.parts[part["name"]].setExpression("Placement", part["placed"])
@@ -67,7 +70,11 @@ class _Writer:
         group = self.assembly.newObject("Assembly::JointGroup", "Joints")
         grounded = group.newObject("App::FeaturePython", "GroundedJoint")
         JointObject.GroundedJoint(grounded, self.parts[self.job["ground"]])
-        self.joints = [self._joint(group, joint) for joint in self.job["joints"]]
+        self.joints = [self.document.addObject("App::FeaturePython", joint["object"]) for joint in self.job["joints"]]
+        self._group(group, self.joints)
+        self._group(self.assembly, self.joints)
+        for item, joint in zip(self.joints, self.job["joints"], strict=True):
+            self._joint(item, joint)
         self._bill()
         self.document.recompute()
         self.document.recompute()
@@ -132,7 +139,7 @@ class _Writer:
     def _part(self, part: Json) -> None:
         name = part["name"]
         if part["kind"] == "link":
-            link = self.assembly.newObject("App::Link", part["object"])
+            link = self.document.addObject("App::Link", part["object"])
             link.LinkedObject = self.containers[part["source"]]
             self.parts[name], self.containers[name] = link, self.containers[part["source"]]
             self.shapes[name] = self.shapes[part["source"]]
@@ -141,7 +148,7 @@ class _Writer:
             for connector in part["connectors"]:
                 self.connectors[name, connector["name"]] = self.connectors[part["source"], connector["name"]]
         else:
-            container = self.assembly.newObject("App::Part", part["object"])
+            container = self.document.addObject("App::Part", part["object"])
             self.parts[name] = self.containers[name] = container
             self.shapes[name] = self._shape(part, container)
             self.colors[self.shapes[name].Name] = part["color"]
@@ -273,14 +280,18 @@ class _Writer:
                 if part is not None and key in part.PropertiesList:
                     item.set(f"{chr(ord('A') + len(_OWN_COLUMNS) + place)}{row}", f"={part.Name}.{key}")
 
+    @staticmethod
+    def _group(group: Any, items: list[Any]) -> None:
+        """Add objects to a group, all at once: FreeCAD looks at all of a group's objects whenever one is added."""
+        group.Group = [*group.Group, *items]
+
     def _place(self) -> None:
         for part in self.job["parts"]:
             self.parts[part["name"]].Placement = placement(part["placement"])
 
     # ------------------------------------------------------------------ joints
 
-    def _joint(self, group: Any, joint: Json) -> Any:
-        item = group.newObject("App::FeaturePython", joint["object"])
+    def _joint(self, item: Any, joint: Json) -> None:
         JointObject.Joint(item, JointObject.JointTypes.index(joint["type"]))
         item.Label = joint["label"]
         if not joint["active"]:
@@ -299,7 +310,6 @@ class _Writer:
         item.Proxy.updateJCSPlacements(item)
         for name, expression in joint["expressions"].items():
             item.setExpression(name, expression)
-        return item
 
     def _reference(self, part: str, connector: str) -> list[Any]:
         head, tail = self.parts[part].Name, f"{self.connectors[part, connector].Name}."
