@@ -205,8 +205,7 @@ class _Taking:
             (a, b, self.forced[frozenset((a, b))])
             for a in moving
             for b in placed
-            if frozenset((a, b)) in self.forced
-            and (np.isfinite(ways.travel(a, b, way, first)) or (first.any() and np.isfinite(ways.travel(a, b, _unit(first)))))
+            if frozenset((a, b)) in self.forced and (ways.meets(a, b, way, first) or (first.any() and ways.meets(a, b, _unit(first))))
         )
         along = float(first @ way)
         moves = [
@@ -324,12 +323,12 @@ class _Taking:
         """Return how much material of atoms is pushed through parts that they are joined to by force, to two digits [mm³]."""
         moving = [name for atom in atoms for name in atom]
         pairs = [(a, b) for a in moving for atom in left for b in atom if b not in moving and frozenset((a, b)) in self.forced]
-        return float(f"{sum(ways.met(a, b, way) for a, b in pairs if np.isfinite(ways.travel(a, b, way))):.2g}")
+        return float(f"{sum(ways.met(a, b, way) for a, b in pairs if ways.meets(a, b, way)):.2g}")
 
     def _overlap(self, moving: Sequence[str], staying: Sequence[str], way: FloatArray, ways: Ways) -> float:
         """Return how far from its place a pair that is joined by force first meets when it comes from outside [mm]."""
         far = ways.clear_length(moving, staying, way)
-        pairs = [(a, b) for a in moving for b in staying if frozenset((a, b)) in self.forced and np.isfinite(ways.travel(a, b, way))]
+        pairs = [(a, b) for a in moving for b in staying if frozenset((a, b)) in self.forced and ways.meets(a, b, way)]
         return max((far - ways.travel(a, b, -way, far * way) for a, b in pairs), default=0.0)
 
     def _in_two_moves(self, left: Sequence[Atom], base: str) -> _Removal | None:

@@ -20,7 +20,7 @@ from articad.connectors.se3 import SE3
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import inwards
-from articad.interference.travel import Outline, first_contacts, material_met
+from articad.interference.travel import Outline, first_contacts, material_met, meets
 
 __all__ = ["CLEAR_MM", "Halt", "WayOut", "Ways", "ways_of", "ways_out"]
 
@@ -74,6 +74,10 @@ class WayOut:
         }
 
 
+_Key = tuple[str, str, int, tuple[float, ...]]
+"""Two parts, the number of a direction, and the offset of the first one [mm], empty where it is at its place."""
+
+
 class Ways:
     """The straight ways of the parts of a scene at one pose.
 
@@ -89,7 +93,8 @@ class Ways:
         self._corners: dict[tuple[str, float], FloatArray] = {}
         self._outlines: dict[tuple[str, float, int], Outline] = {}
         self._directions: list[FloatArray] = []
-        self._known: dict[tuple[str, str, int, tuple[float, ...]], tuple[float, float]] = {}
+        self._known: dict[_Key, tuple[float, float]] = {}
+        self._meets: dict[_Key, tuple[bool, bool]] = {}
         self._met: dict[tuple[str, str, int, int], float] = {}
         self._stops: Counter[tuple[str, str]] = Counter()
 
@@ -102,15 +107,19 @@ class Ways:
             direction: Unit vector `(3,)`.
             offset: By which the part has moved before `(3,)` [mm].
         """
-        at, sign = self._index(direction)
-        a, b = sorted((part, other))
-        before = np.zeros(3) if offset is None else offset
-        if part != a:
-            sign, before = -sign, -before  # the other way round, the other part moves backwards
-        key = (a, b, at, tuple(before.tolist()) if before.any() else ())
+        key, side = self._key(part, other, direction, offset)
         if key not in self._known:
-            self._known[key] = self._measured(a, b, at, before)
-        return self._known[key][0 if sign > 0 else 1]
+            self._known[key] = first_contacts(*self._seen(key))
+        return self._known[key][side]
+
+    def meets(self, part: str, other: str, direction: FloatArray, offset: FloatArray | None = None) -> bool:
+        """Return whether a part meets another one on its way to infinity: whether `travel` is finite."""
+        key, side = self._key(part, other, direction, offset)
+        if key in self._known:
+            return math.isfinite(self._known[key][side])
+        if key not in self._meets:
+            self._meets[key] = meets(*self._seen(key))
+        return self._meets[key][side]
 
     def stop(
         self,
@@ -155,7 +164,7 @@ class Ways:
         staying = tuple(staying)
         pairs = [(part, other) for part in moving for other in staying if frozenset((part, other)) not in self.permitted]
         for pair in sorted(pairs, key=lambda pair: -self._stops[pair]):
-            if math.isfinite(self.travel(*pair, direction, offset)):
+            if self.meets(*pair, direction, offset):
                 self._stops[pair] += 1
                 return False
         return True
@@ -171,7 +180,7 @@ class Ways:
 
     def blocks(self, part: str, other: str, direction: FloatArray) -> bool:
         """Return whether another part stops a part on its way to infinity."""
-        return frozenset((part, other)) not in self.permitted and math.isfinite(self.travel(part, other, direction))
+        return frozenset((part, other)) not in self.permitted and self.meets(part, other, direction)
 
     def points(self, part: str) -> FloatArray:
         """Return the vertices of a part in the ground frame, `(V, 3)` [mm]."""
@@ -187,11 +196,22 @@ class Ways:
         """Return the depth of overlap that is allowed for a pair [mm]."""
         return self.scene.passable(a, b)
 
-    def _measured(self, a: str, b: str, at: int, offset: FloatArray) -> tuple[float, float]:
+    def _key(self, part: str, other: str, direction: FloatArray, offset: FloatArray | None) -> tuple[_Key, int]:
+        """Return the key of what is known of a pair's way, which is the same for both parts, and which of its two ways is meant."""
+        at, sign = self._index(direction)
+        a, b = sorted((part, other))
+        before = np.zeros(3) if offset is None else offset
+        if part != a:
+            sign, before = -sign, -before  # the other way round, the other part moves backwards
+        return (a, b, at, tuple(before.tolist()) if before.any() else ()), 0 if sign > 0 else 1
+
+    def _seen(self, key: _Key) -> tuple[Outline, Outline]:
+        """Return both parts as seen along the direction of a key, the first one less what the pair may overlap."""
+        a, b, at, before = key
         moved = self._outline(a, self.depth(a, b), at)
-        if offset.any():
-            moved = moved.shifted(offset, self._directions[at])
-        return first_contacts(moved, self._outline(b, 0.0, at))
+        if before:
+            moved = moved.shifted(np.array(before), self._directions[at])
+        return moved, self._outline(b, 0.0, at)
 
     def _outline(self, part: str, depth: float, at: int) -> Outline:
         key = (part, depth, at)

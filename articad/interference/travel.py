@@ -15,11 +15,12 @@ import numpy as np
 
 from articad.arrays import BoolArray, FloatArray, IntArray
 
-__all__ = ["Outline", "first_contacts", "material_met"]
+__all__ = ["Outline", "first_contacts", "material_met", "meets"]
 
 _GROUP: Final = 8  # triangles that share a box
 _AT_ONCE: Final = 1 << 12  # pairs of triangles
 _GROUPS_AT_ONCE: Final = 1 << 10  # pairs of groups of triangles
+_GROUPS_UNTIL_MET: Final = 1 << 6  # the same where the first contact decides
 _BOXES_AT_ONCE: Final = 1 << 21  # pairs of boxes
 _FLAT: Final = 1e-12  # of squared lengths: twice the area of a triangle that is seen edge-on
 _EDGE: Final = 1e-9  # of coordinates on edges and in triangles
@@ -113,20 +114,44 @@ def first_contacts(a: Outline, b: Outline) -> tuple[float, float]:
     low, high = np.maximum(a.box[0], b.box[0]), np.minimum(a.box[1], b.box[1])
     if (low > high).any():
         return np.inf, np.inf
-    forwards, backwards = _nearest(a, b, a.inside(low, high, wide=True), b.inside(low, high, wide=True), (np.inf, np.inf))
+    forwards, backwards = _nearest(a, b, a.inside(low, high, wide=True), b.inside(low, high, wide=True))
     if forwards > 0 and np.isfinite(forwards + backwards):
         return _nearest(a, b, a.inside(low, high, wide=False), b.inside(low, high, wide=False), (forwards, backwards))
     return forwards, backwards
 
 
-def _nearest(a: Outline, b: Outline, rows: IntArray, columns: IntArray, known: tuple[float, float]) -> tuple[float, float]:
-    """Return the least travels of some triangles of a to some of b, forwards and backwards, that are less than those known."""
+def meets(a: Outline, b: Outline) -> tuple[bool, bool]:
+    """Return whether a meets b anywhere on its way along the direction of both outlines, and on its way back: where `first_contacts` is finite.
+
+    The first contact on each way ends its search.
+    """
+    low, high = np.maximum(a.box[0], b.box[0]), np.minimum(a.box[1], b.box[1])
+    if (low > high).any():
+        return False, False
+    forwards, backwards = _nearest(a, b, a.inside(low, high, wide=True), b.inside(low, high, wide=True), any_contact=True)
+    return bool(np.isfinite(forwards)), bool(np.isfinite(backwards))
+
+
+def _nearest(
+    a: Outline,
+    b: Outline,
+    rows: IntArray,
+    columns: IntArray,
+    known: tuple[float, float] = (np.inf, np.inf),
+    *,
+    any_contact: bool = False,
+) -> tuple[float, float]:
+    """Return the least travels of some triangles of a to some of b, forwards and backwards, that are less than those known.
+
+    With `any_contact`, zero for each way on which they meet.
+    """
     forwards, backwards = known
+    at_once = _GROUPS_UNTIL_MET if any_contact else _GROUPS_AT_ONCE
     groups, near, far = _meeting(a, b, rows, columns)
     # those that may be next to each other first: most others are then farther than what is known
     order = np.argsort(np.maximum(near, -far), kind="stable")
-    for first in range(0, len(order), _GROUPS_AT_ONCE):
-        some = order[first : first + _GROUPS_AT_ONCE]
+    for first in range(0, len(order), at_once):
+        some = order[first : first + at_once]
         some = some[_decides(near[some], far[some], forwards, backwards)]
         i, j = _expanded(a, b, rows, columns, groups[some])
         decides = _decides(b.bottom[j] - a.top[i], b.top[j] - a.bottom[i], forwards, backwards)
@@ -141,6 +166,10 @@ def _nearest(a: Outline, b: Outline, rows: IntArray, columns: IntArray, known: t
                 return 0.0, 0.0
             forwards = min(forwards, float(least[least > 0].min(initial=np.inf)))
             backwards = min(backwards, -float(most[most < 0].max(initial=-np.inf)))
+        if any_contact:
+            forwards, backwards = (0.0 if np.isfinite(travelled) else np.inf for travelled in (forwards, backwards))
+            if forwards == backwards == 0.0:
+                break
     return forwards, backwards
 
 

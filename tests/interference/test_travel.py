@@ -10,9 +10,10 @@ import pytest
 from articad.connectors import SE3
 from articad.geometry import TriMesh
 from articad.geometry.shapes import box, cylinder, tube
+from articad.interference import travel
 from articad.interference.body import body_of
 from articad.interference.overlap import distance, overlap
-from articad.interference.travel import Outline, _travels, first_contacts, material_met
+from articad.interference.travel import Outline, _travels, first_contacts, material_met, meets
 from tests.interference.mechanisms import random_rotation
 
 SHAPES = (box(4, 7, 11), cylinder(5, 9, 24), tube(4, 6, 8, 24))
@@ -99,3 +100,31 @@ def test_walls_that_are_seen_edge_on_decide_nothing_about_solids(seed: int) -> N
     both = [Outline.of(corners(mesh, turn @ T), way) for mesh, T in ((a, SE3.identity()), (b, T_b))]
     assert not both[0].wide.all()
     assert first_contacts(*both) == pytest.approx(of_every_two(*both), abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(120))
+def test_surfaces_meet_where_their_travel_is_finite(seed: int) -> None:
+    """Beside each other, apart on one side, around each other, and through each other."""
+    rng = np.random.default_rng(seed)
+    a, b = (SHAPES[k] for k in rng.integers(0, len(SHAPES), 2))
+    way = rng.normal(size=3)
+    way /= np.linalg.norm(way)
+    T_b = SE3.from_translation(rng.uniform(-1, 1, 3) * (4, 12, 25)[seed % 3]) @ random_rotation(rng)
+    both = Outline.of(corners(a, random_rotation(rng)), way), Outline.of(corners(b, T_b), way)
+    assert meets(*both) == tuple(math.isfinite(travel) for travel in first_contacts(*both))
+
+
+def test_whether_surfaces_meet_takes_fewer_triangles_than_where(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tube with 4,000 triangles that is pushed at another one, which lies before it."""
+    examined = {"meets": 0, "first_contacts": 0}
+    way = np.array([1.0, 0.0, 0.0])
+    ends = [Outline.of(corners(tube(4, 6, 80, 1000), SE3.from_translation((at, 1, 2))), way) for at in (0, 20)]
+    for name, asked in (("meets", meets), ("first_contacts", first_contacts)):
+
+        def counted(p: np.ndarray, *rest: np.ndarray, name: str = name) -> np.ndarray:
+            examined[name] += len(p)
+            return _travels(p, *rest)
+
+        monkeypatch.setattr(travel, "_travels", counted)
+        asked(*ends)
+    assert 0 < examined["meets"] < examined["first_contacts"] / 3
