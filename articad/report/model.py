@@ -9,6 +9,7 @@ import numpy as np
 from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.connectors.mate import Mate
+from articad.disassembly.opened import step_poses
 from articad.disassembly.steps import AssemblyOrder, shown_path, words_of
 from articad.errors import ArticadError
 from articad.export.meshes import drawn_shapes
@@ -83,21 +84,29 @@ def viewer_model(assembly: Assembly) -> Json:
 
 
 def drawn_steps(assembly: Assembly, order: Json) -> Json:
-    """Return the steps of an order of assembly as the page plays them: what is new, what is in place, and the path."""
-    index = {name: number for number, name in enumerate(assembly.mechanism.parts)}
-    size = _size(assembly)
-    return {
-        "steps": [
+    """Return the steps of an order of assembly as the page plays them: what is new, what is in place, and the path.
+
+    The page moves the whole by itself. Where a loop is still open, the parts stand where the whole never has them, and their poses are stated.
+    """
+    mechanism = assembly.mechanism
+    index = {name: number for number, name in enumerate(mechanism.parts)}
+    size, found = _size(assembly), AssemblyOrder.from_json(order)
+    steps: list[Json] = []
+    for step in found.steps:
+        poses = step_poses(mechanism, step, found.base) if step.opened else {}
+        steps.append(
             {
                 "parts": [index[name] for name in step.parts],
                 "onto": [index[name] for name in step.onto],
                 "path": shown_path(step, size).tolist(),
-                "at": {} if step.opened else step.at,  # the page moves the whole; the text says how the rest of an opened loop is moved
+                "at": {} if step.opened else step.at,
+                "poses": {
+                    str(index[name]): poses[name].matrix[:3].ravel().tolist() for name in sorted({*step.parts, *step.onto} & poses.keys())
+                },
                 "text": f"Step {step.number}: {words_of(step)}",
             }
-            for step in AssemblyOrder.from_json(order).steps
-        ]
-    }
+        )
+    return {"steps": steps}
 
 
 def _parts(assembly: Assembly) -> tuple[list[Json], list[Json]]:

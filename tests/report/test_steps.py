@@ -8,7 +8,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from articad.disassembly.opened import step_poses
 from articad.report import Documents, report_page
+from tests.disassembly.test_opened import CASES
 from tests.papers.test_manual import boxed
 from tests.report.conftest import Opened
 from tests.report.test_page import assert_silent
@@ -56,3 +58,25 @@ def test_all_steps_are_played_after_each_other(open_page: Callable[..., Opened])
     until(lambda: opened("document.getElementById('status').textContent").startswith(f"Step {last}"))
     opened.page.click("#reset")
     assert opened(HIDDEN) == []
+
+
+def test_a_step_of_an_opened_loop_is_played_where_it_is_proven(open_page: Callable[..., Opened]) -> None:
+    """What is left of the linkage is turned over there, beyond the range of the whole; the page is looked at afterwards as before."""
+    assembly = CASES["bell crank"][0]().assembly()
+    order = assembly.assembly_order()
+    (step,) = [step for step in order.steps if step.opened]
+    opened = open_page(report_page(assembly, Documents(order=order.to_json())))
+    opened.page.emulate_media(reduced_motion="reduce")
+
+    opened.page.click(f'[data-step="{step.number - 1}"]')
+    proven = step_poses(assembly.mechanism, step, order.base)
+    shown = dict(zip(assembly.mechanism.parts, opened("articad.view.poses"), strict=True))
+    for name in (*step.parts, *step.onto):
+        assert np.allclose(np.array(shown[name]).reshape(3, 4), proven[name].matrix[:3], atol=1e-9), name
+    rest = assembly.at()
+    assert not np.allclose(proven["crank"].matrix, rest["crank"].matrix, atol=0.1)
+
+    opened.page.click("#unfocus")
+    shown = dict(zip(assembly.mechanism.parts, opened("articad.view.poses"), strict=True))
+    assert all(np.allclose(np.array(shown[name]).reshape(3, 4), rest[name].matrix[:3], atol=1e-6) for name in rest)
+    assert_silent(opened)

@@ -254,8 +254,10 @@ function along(path, share) {
 function playStep(index, onwards = false) {
   if (!view) return;
   stop();
-  const { parts, onto, path, at, text } = model.order.steps[index];
+  const { parts, onto, path, at, poses: apart, text } = model.order.steps[index];
+  view.shift([], [0, 0, 0]);
   set(at, { others: "rest" });
+  view.place(mechanism.poses(Q).map((T, part) => apart[part] ?? T)); // what is left of an opened loop stands where the whole never has it
   assembled = false;
   mechanism.parts.forEach((_, part) => show(part, parts.includes(part) || onto.includes(part)));
   view.focus([]);
@@ -281,6 +283,7 @@ function endSteps() {
   assembled = true;
   cancelAnimationFrame(stepping);
   mechanism.parts.forEach((_, part) => show(part, true));
+  view.place(mechanism.poses(Q));
   view.shift([], [0, 0, 0]);
 }
 

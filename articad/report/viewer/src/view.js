@@ -216,11 +216,12 @@ export class View {
     this.place(this.poses);
   }
 
-  // Look at some parts, and at others that are moved by an offset, from where the camera is.
+  // Look at some parts as they are placed, and at others that are moved by an offset, from where the camera is.
   frame(parts, moved, offset) {
+    const boxes = this.groups.map((group) => new Box3().expandByObject(group));
     const box = new Box3(), way = this.camera.position.clone().sub(this.controls.target).normalize();
-    for (const part of [...parts, ...moved]) box.union(this.partBoxes[part]);
-    for (const part of moved) box.union(this.partBoxes[part].clone().translate(new Vector3(...offset)));
+    for (const part of [...parts, ...moved]) box.union(boxes[part]);
+    for (const part of moved) box.union(boxes[part].translate(new Vector3(...offset)));
     const { center, radius } = box.getBoundingSphere(new Sphere());
     this.#stand(center, way, (Math.max(radius, 0.02 * this.size) * 1.15) / Math.sin((FIELD * Math.PI) / 360) / Math.min(1, this.perspective.aspect));
   }
