@@ -19,6 +19,8 @@ from tests.assemblies import block, frame
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted(path.parent for path in (ROOT / "examples").glob("*/plan.json"))
 
+LONG = {"stewart_platform", "table_football"}  # for the long run, `-m soak`: they take as long as the other nine
+
 pytestmark = pytest.mark.engines
 
 
@@ -27,7 +29,9 @@ def test_there_are_examples() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("folder", EXAMPLES, ids=lambda folder: folder.name)
+@pytest.mark.parametrize(
+    "folder", [pytest.param(path, id=path.name, marks=[pytest.mark.soak] if path.name in LONG else []) for path in EXAMPLES]
+)
 def test_an_example_has_no_finding(folder: Path, tmp_path: Path) -> None:
     assembly = Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
 

@@ -31,7 +31,7 @@ DIFFERENT = 12  # of 255
 LEAST_SEEN = 40  # pixels of 320 × 320 that change with the mover's colour
 LEAST_CHANGED = 15  # pixels that differ from one keyframe to the next
 
-LONG = {"table_football", "stewart_platform", "desk_lamp", "metronome", "drill", "tempo"}  # a minute or more each
+LONG = {"table_football", "stewart_platform", "desk_lamp", "metronome", "drill", "tempo", "whisk"}  # a minute or more each
 
 pytestmark = pytest.mark.slow
 
