@@ -129,13 +129,13 @@ def test_free_says_what_stop_says_and_measures_no_pair_after_one_that_meets() ->
         for offset in (None, np.array([0.0, 3.0, 1.0])):
             halt = answered.stop(["a", "b"], "cdef", way, offset=offset)
             assert asked.free(["a", "b"], "cdef", way, offset=offset) == math.isinf(halt.travel)
-    measured = len(asked._known)
+    measured = len(asked._meets)
     assert measured < len(answered._known)  # blocked directions end early
     last = Ways(scene, rest(bars))
     assert not last.free(["a"], "bcdef", np.array([1.0, 0, 0]))
-    assert len(last._known) == 1
+    assert len(last._meets) == 1
     assert not last.free(["a"], "fedcb", np.array([1.0, 0, 0]), offset=np.array([0.0, 1.0, 0]))
-    assert len(last._known) == 2  # the pair that met before is asked first, whatever the order
+    assert len(last._meets) == 2  # the pair that met before is asked first, whatever the order
 
 
 def test_free_lets_pass_what_is_permitted() -> None:
