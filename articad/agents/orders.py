@@ -45,12 +45,12 @@ from articad.realisation.bores import TILT, along, beside
 from articad.realisation.sides import Sides, sides
 from articad.realisation.slots import Between, Slot, slots_of
 
-__all__ = ["HELD", "addressed", "as_built", "source_of"]
+__all__ = ["FITS", "HELD", "addressed", "as_built", "source_of"]
 
-_FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
+FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
 HELD: Final = frozenset({"W_JOINT_NOT_MADE", "W_JOINT_PARTLY_MADE", "W_JOINT_LEAVES", "W_JOINT_SHORT"})
 """Codes of joints that surfaces do not make."""
-_CODES: Final = _FITS | HELD | {"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FLOATING", "E_NOT_TOUCHING"}
+_CODES: Final = FITS | HELD | {"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FLOATING", "E_NOT_TOUCHING"}
 _CUT: Final = frozenset({"unbored_hole", "missing_slot"})  # causes that a cut mends: one that was ordered, or one that must be
 _ABOUT_AXIS: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
 _ON_AXIS_MM: Final = 0.2  # a pin whose axis is farther away from that of a bore was not made for it
@@ -147,7 +147,7 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
 
 def _with_its_overlap(finding: Finding, several: Sequence[Finding]) -> Finding:
     """Return a fit's finding, sent to the designer if the overlap at rest of the same two parts is; its numbers follow from that."""
-    if finding.code not in _FITS or finding.route == "design":
+    if finding.code not in FITS or finding.route == "design":
         return finding
     ordered = any(
         other.code == "E_STATIC_OVERLAP" and other.route == "design" and other.cause is not None and set(other.parts) == set(finding.parts)
@@ -311,7 +311,7 @@ def _addressed(
         return replace(finding, route="design", hint=f"{follows}: {finding.hint[0].lower()}{finding.hint[1:]}")
     if len(parts) != 2 or frozenset(parts) in unmeasured:
         return finding
-    numbers = fitting.get(finding.where, "") if finding.code in _FITS else ""
+    numbers = fitting.get(finding.where, "") if finding.code in FITS else ""
     return replace(finding, route="design", hint=f"{numbers} {finding.hint}".strip())
 
 

@@ -7,6 +7,7 @@ import threading
 from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Final
 
 from articad.agents.finetuning import absorbed, notes
@@ -23,7 +24,6 @@ from articad.findings.codes import CODES
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import RealisedPart, build_parts, build_source
 from articad.plan.brief import brief_digest
-from articad.plan.entry import specification
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
@@ -91,8 +91,8 @@ class PartBuilder:
     cache: BuildCache
     jobs: int | None
     progress: Progress | None
-    memory: Memory | None = None
-    documentation: Documentation | None = None
+    memory: Memory = field(default_factory=NoMemory)
+    documentation: Documentation = field(default_factory=NoDocumentation)
     complaints: dict[str, tuple[str, Image | None]] = field(default_factory=dict)
     fates: dict[str, Fate] = field(default_factory=dict)
     begun: dict[str, bytes] = field(default_factory=dict)
@@ -162,7 +162,8 @@ class PartBuilder:
         with ThreadPoolExecutor(max_workers=min(CALLS_AT_ONCE, len(sources))) as pool:
             asked: dict[str, Future[dict[str, Answer]]] = {}
             for names, step in zip(groups, steps, strict=True):
-                asked |= dict.fromkeys(names, pool.submit(self._ask_together, {name: resolved[name] for name in names}, step))
+                ask = partial(asked_together, step=step, memory=self.memory, documentation=self.documentation)
+                asked |= dict.fromkeys(names, pool.submit(ask, {name: resolved[name] for name in names}, self.kernel.name, self.port))
             futures = {name: pool.submit(self._make, resolved[name], name, asked.get(name)) for name in sources}
         self.complaints = {}
         self.fates = {name: self.fates[name] for name in (*sources, *gone) if name in self.fates}
@@ -210,21 +211,6 @@ class PartBuilder:
     def _answers(self, name: str) -> int:
         """Return how many answers about a part have an address."""
         return self.made[name].answers if name in self.made else 0
-
-    def _ask_together(self, resolved: Mapping[str, ResolvedPlan], step: str) -> dict[str, Answer]:
-        """Return the first answers for several parts."""
-        kernel, memory, documentation = self.kernel.name, self.memory or NoMemory(), self.documentation or NoDocumentation()
-        texts = {name: specification(plan, name) for name, plan in resolved.items()}
-        examples = [case for text in texts.values() for case in memory.for_part(text, kernel)]
-        snippets = [entry for name, text in texts.items() for entry in documentation.for_part(name, text, kernel, self.port)]
-        return asked_together(
-            resolved,
-            kernel,
-            self.port,
-            step=step,
-            examples=list(dict.fromkeys(examples)),
-            snippets=list(dict.fromkeys(snippets)),
-        )
 
     def _make(self, resolved: ResolvedPlan, name: str, asked: Future[dict[str, Answer]] | None) -> None:
         """Make one part, or keep it as it is."""

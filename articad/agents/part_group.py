@@ -10,13 +10,14 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from articad.agents.llm import LLM, Message, Request, system, user
+from articad.agents.llm import LLM, Request, system, user
 from articad.agents.part_writer import ROLE, Answer, instructions
 from articad.agents.prompts import prompt
+from articad.agents.retrieval import Documentation, Memory
 from articad.plan.entry import specification
 from articad.plan.resolve import ResolvedPlan
 
-TOGETHER: Final = 6  # parts in one request: about 9,000 characters of scripts, and a product of 40 parts still fills eight requests
+TOGETHER: Final = 6  # parts in one request: about 9,000 characters of scripts, and a product of 40 parts still fills seven requests
 _HEADING: Final = re.compile(r"#{1,6}[ \t]*`?(\w+)`?[ \t]*:?")
 LEAST: Final = 3  # two parts are written sooner side by side
 
@@ -36,7 +37,7 @@ def grouped(names: Sequence[str], most: int) -> list[tuple[str, ...]]:
 
 
 def asked_together(
-    resolved: Mapping[str, ResolvedPlan], kernel: str, llm: LLM, *, step: str, examples: Sequence[str], snippets: Sequence[str]
+    resolved: Mapping[str, ResolvedPlan], kernel: str, llm: LLM, *, step: str, memory: Memory, documentation: Documentation
 ) -> dict[str, Answer]:
     """Ask for the scripts of several parts at once.
 
@@ -45,23 +46,20 @@ def asked_together(
         kernel: The dialect of the scripts.
         llm: The model.
         step: Address of the request.
-        examples: Parts of other products, with their scripts.
-        snippets: Documentation of the kernel.
+        memory: Source of worked examples.
+        documentation: Source of the kernel's API.
 
     Returns:
         The answer for each part that has one.
     """
-    reply = llm.complete(Request(ROLE, step, opening(resolved, kernel, examples=examples, snippets=snippets)))
-    return {name: Answer(step, text) for name, text in sections(reply.text, tuple(resolved)).items()}
-
-
-def opening(
-    resolved: Mapping[str, ResolvedPlan], kernel: str, *, examples: Sequence[str] = (), snippets: Sequence[str] = ()
-) -> tuple[Message, ...]:
-    """Return the messages to the author of several parts."""
-    several = f"{instructions(kernel, examples=examples, snippets=snippets)}\n\n{prompt('part_group', count=str(len(resolved)))}"
-    entries = [f"## {name}\n\n{specification(plan, name)}" for name, plan in resolved.items()]
-    return (system(several), user("\n\n".join(["The specifications:", *entries])))
+    entries = {name: specification(plan, name) for name, plan in resolved.items()}
+    examples = [case for entry in entries.values() for case in memory.for_part(entry, kernel)]
+    snippets = [text for name, entry in entries.items() for text in documentation.for_part(name, entry, kernel, llm)]
+    told = instructions(kernel, examples=list(dict.fromkeys(examples)), snippets=list(dict.fromkeys(snippets)))
+    asked = "\n\n".join(["The specifications:", *(f"## {name}\n\n{entry}" for name, entry in entries.items())])
+    several = f"{told}\n\n{prompt('part_group', count=str(len(entries)))}"
+    reply = llm.complete(Request(ROLE, step, (system(several), user(asked))))
+    return {name: Answer(step, text) for name, text in sections(reply.text, tuple(entries)).items()}
 
 
 def sections(text: str, names: Sequence[str]) -> dict[str, str]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Final, Literal
 
 from articad.agents.inspection import look
@@ -156,9 +157,9 @@ class PartWriter:
         Raises:
             BuildError, ContractError, OutputError: The failure of the last answer, when all repairs are used up or the specification is at fault.
         """
-        first, alike, best = self._opening(), 0, None
+        alike, best = 0, None
         for number in range(answered + 1, answered + self._repairs + 2):
-            answer = given or self._answer(number, messages_after(first, previous, anew=alike == 1))
+            answer = given or self._answer(number, messages_after(self._opening, previous, anew=alike == 1))
             given = None
             outcome = self._tried(answer, number)
             if isinstance(outcome, RealisedPart):
@@ -189,6 +190,7 @@ class PartWriter:
         step = f"part/{self._name}/{number}"
         return Answer(step, self._llm.complete(Request(ROLE, step, messages)).text)
 
+    @cached_property
     def _opening(self) -> tuple[Message, ...]:
         kernel = self._kernel.name
         examples = self._memory.for_part(self._specification, kernel)

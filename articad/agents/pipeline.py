@@ -117,11 +117,8 @@ def _options_of(run: Run) -> Mapping[str, Any]:
         RunError: Naming the options that are missing.
     """
     options = {**_UNSAID, **run.request.options}
-    wrong = [
-        key
-        for key, kind in {**_NEEDED, **{key: type(usual) for key, usual in _UNSAID.items()}}.items()
-        if not isinstance(options.get(key), kind)
-    ]
+    needed = {**_NEEDED, **{key: type(usual) for key, usual in _UNSAID.items()}}
+    wrong = [key for key, kind in needed.items() if not isinstance(options.get(key), kind)]
     if options.get("task") not in {"generate", "edit"}:
         raise RunError.at(run.path, "This run was built from a plan, without a model.", "Repeat `articad build` with the same --out.")
     if wrong:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Final
 
-from articad.agents.orders import as_built, source_of
+from articad.agents.orders import FITS, as_built, source_of
 from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
@@ -40,8 +40,10 @@ _HALVINGS: Final = 6  # of the step between a free pose and the next one
 _MARGIN: Final = 0.01  # of a range: distance from the pose at which parts meet
 _SHORT: Final = 0.05  # of a range: a shorter one is no motion
 _DECIMALS: Final = 4  # of mm in a change
-_FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
-_SOUGHT: Final = frozenset({"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"}) | {
+_SOUGHT: Final = FITS | {
+    "E_OVERLAP",
+    "E_STATIC_OVERLAP",
+    "E_MOTION_COLLISION",
     "E_FLOATING",
     "E_NOT_TOUCHING",
 }
@@ -123,7 +125,7 @@ def _declared(asked: Sequence[Finding], assembly: Assembly, resolved: ResolvedPl
     whole, change = resolved.plan.to_json(), dict[str, Any]()
     for finding in asked:
         joint = finding.where.removeprefix("joints.").removesuffix(".fit")
-        fields = as_built(finding, assembly.fits[joint]) if finding.code in _FITS and joint in assembly.fits else {}
+        fields = as_built(finding, assembly.fits[joint]) if finding.code in FITS and joint in assembly.fits else {}
         if not fields:
             return {}
         for key, value in fields.items():

@@ -111,12 +111,9 @@ def first_contacts(a: Outline, b: Outline) -> tuple[float, float]:
     Solids share volume on rays along the direction, and almost no ray meets a triangle that is seen edge-on. So such walls decide nothing
     about a way out. Solids that share volume where they are meet both ways; only then walls are searched for where they cross others.
     """
-    low, high = np.maximum(a.box[0], b.box[0]), np.minimum(a.box[1], b.box[1])
-    if (low > high).any():
-        return np.inf, np.inf
-    forwards, backwards = _nearest(a, b, a.inside(low, high, wide=True), b.inside(low, high, wide=True))
+    forwards, backwards = _nearest(a, b, wide=True)
     if forwards > 0 and np.isfinite(forwards + backwards):
-        return _nearest(a, b, a.inside(low, high, wide=False), b.inside(low, high, wide=False), (forwards, backwards))
+        return _nearest(a, b, (forwards, backwards), wide=False)
     return forwards, backwards
 
 
@@ -125,26 +122,21 @@ def meets(a: Outline, b: Outline) -> tuple[bool, bool]:
 
     The first contact on each way ends its search.
     """
-    low, high = np.maximum(a.box[0], b.box[0]), np.minimum(a.box[1], b.box[1])
-    if (low > high).any():
-        return False, False
-    forwards, backwards = _nearest(a, b, a.inside(low, high, wide=True), b.inside(low, high, wide=True), any_contact=True)
+    forwards, backwards = _nearest(a, b, wide=True, any_contact=True)
     return bool(np.isfinite(forwards)), bool(np.isfinite(backwards))
 
 
 def _nearest(
-    a: Outline,
-    b: Outline,
-    rows: IntArray,
-    columns: IntArray,
-    known: tuple[float, float] = (np.inf, np.inf),
-    *,
-    any_contact: bool = False,
+    a: Outline, b: Outline, known: tuple[float, float] = (np.inf, np.inf), *, wide: bool, any_contact: bool = False
 ) -> tuple[float, float]:
-    """Return the least travels of some triangles of a to some of b, forwards and backwards, that are less than those known.
+    """Return the least travels of triangles of a to those of b, forwards and backwards, that are less than those known.
 
-    With `any_contact`, zero for each way on which they meet.
+    With `wide` of those that are not seen edge-on. With `any_contact`, zero for each way on which they meet.
     """
+    low, high = np.maximum(a.box[0], b.box[0]), np.minimum(a.box[1], b.box[1])
+    if (low > high).any():
+        return known
+    rows, columns = (each.inside(low, high, wide=wide) for each in (a, b))
     forwards, backwards = known
     at_once = _GROUPS_UNTIL_MET if any_contact else _GROUPS_AT_ONCE
     groups, near, far = _meeting(a, b, rows, columns)
