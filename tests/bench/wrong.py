@@ -247,6 +247,28 @@ def _mispinned(_check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, joints=joints))
 
 
+def _leaning(check: Check, subject: Subject) -> Subject:
+    """A pin that closes a loop leans, in both of its parts.
+
+    In a delta robot, a misplaced pin leaves the platform level: parallel axes alone keep its attitude. A mechanism with redundant
+    constraints, such as a planar one, would be blocked by a leaning pin; there the pin is misplaced instead.
+    """
+    mechanism = subject.assembly.mechanism
+    closing = next((joint for joint in mechanism.loop_joints if joint.type is JointType.REVOLUTE), None)
+    generic = 6 * (len(mechanism.parts) - 1) - sum(6 - joint.type.freedoms for joint in mechanism.joints)
+    if closing is None or generic != mechanism.mobility:
+        return _mispinned(check, subject)
+    lean, turn = SE3.rot_x(0.2), closing.motion(closing.rest)
+    leaning = replace(
+        closing,
+        T_parent_connector=closing.T_parent_connector @ lean,
+        T_child_connector=closing.T_child_connector @ turn.inverse() @ lean @ turn,
+    )
+    return Subject(
+        changed(subject.assembly, joints=[leaning if joint.name == closing.name else joint for joint in subject.assembly.joints])
+    )
+
+
 def _thin(check: Check, subject: Subject) -> Subject:
     """What a joint carries is too small for it."""
     names = {joint.child for joint in check.joint.found(subject)}  # type: ignore[attr-defined]
@@ -363,7 +385,7 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "rise": _short,
     "travel": _short,
     "straight": _mispinned,
-    "level": _mispinned,
+    "level": _leaning,
     "turns": _unclosed,
     "gap": _thin,
     "captive": _nothing_around,
