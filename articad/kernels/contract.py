@@ -19,6 +19,8 @@ from articad.kernels.failures import scrubbed
 from articad.kernels.results import PoisonedError, number, numbers
 from articad.plan.fields import lengths_in
 from articad.plan.resolve import ResolvedPart
+from articad.plan.signatures import functions_in
+from articad.plan.standard_joints import CUT, FEATURES, feature_of
 
 ENVELOPE_TOLERANCE = 0.02  # of each side: the contract's 2 %
 EMPTY_MM3 = 1e-3  # below this a solid has no volume
@@ -299,7 +301,7 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
         reached.add(dimension)
         step = "1" if dimension.endswith("_count") else "2 %"
         if kind == "unused":
-            yield _unused_finding(name, dimension, step, script)
+            yield from _unused_findings(brief, dimension, step, script)
         elif kind == "refused":
             message = f"The script rejects dimension {dimension!r} moved by {step} either way: {_why(outcome)}."
             hint = "Let the script accept what can be built, or derive the dependent dimensions in the plan."
@@ -321,16 +323,35 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
         yield _finding("W_BUILD_UNCHECKED", name, message, "Simplify the script, so that it can be run once for each dimension.")
 
 
-def _unused_finding(part: str, dimension: str, step: str, script: str) -> Finding:
+def _unused_findings(brief: Json, dimension: str, step: str, script: str) -> Iterator[Finding]:
     """Report a dimension without effect, and why: the script does not name it, or what it sizes does not show on the surface."""
     message = f"Moving dimension {dimension!r} by {step} changes neither volume, centre, bounding box nor connectors."
-    if dimension in _named_in(script):
+    found, named = feature_of(dimension, brief["dimensions"], brief["connectors"]), _named_in(script)
+    if found is not None:
+        connector, feature = found
+        if feature == "shaft":
+            return  # only the cutter of the groove has it, in the air
+        joints = " and ".join(repr(joint["name"]) for joint in brief["connectors"][connector]["joints"]) or repr(connector)
+        message += f" It is {FEATURES[feature]} of standard joint {joints}."
+        if not named & {"made", dimension} and not functions_in(script):
+            message += " The script does not make it."
+            hint = "Return part.made(shape): it adds the features of the part's standard joints."
+        elif feature == "depth":
+            message += " The hole ends in the air."
+            hint = "State a smaller depth, or none: the hole then goes through."
+        elif feature in CUT:
+            message += " What it cuts is only air: the part has no material there."
+            hint = f"Let the body of the part reach across the place of joint {joints}, or correct that place or its axis."
+        else:
+            message += " It lies inside the part's own body."
+            hint = f"Let it stand out of the body, correct the place of joint {joints}, or let the body end there."
+    elif dimension in named:
         message += " The script names it, but what it sizes does not show: it is inside another body of the part, or cuts only air there."
         hint = "Let what it sizes reach the surface, or remove it from the plan's dimensions."
     else:
         message += " The script does not name it."
         hint = "Use it in the geometry, perhaps where a literal number stands, or remove it from the plan's dimensions."
-    return _finding("W_DIMENSION_UNUSED", part, message, hint, dimension=dimension)
+    yield _finding("W_DIMENSION_UNUSED", brief["name"], message, hint, dimension=dimension)
 
 
 def _named_in(script: str) -> set[str]:

@@ -26,7 +26,7 @@ from articad.plan.standard_joints import is_pin
 
 SCRIPT_SUFFIX = {"build123d": ".py", "freecad": ".freecad.py"}
 PIN_SCRIPT: Final = b"def build(part):\n    return part.made(None)\n"
-"""Draws a part that consists of the features of its joints."""
+"""Draws a part that consists of the features of its joints, with every kernel."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def script_of(folder: Path, part: ResolvedPart, kernel: str) -> bytes | None:
     """
     path = script_file(folder, part.name, kernel)
     script = read_script(path, folder.parent) if _is_there(path) else None
-    if kernel != "build123d" or not is_pin(part.dimensions):
+    if not is_pin(part.dimensions):
         return script
     if script is None or (
         path.parent != folder and (held := functions_in(script)) and not any(name in held for name in names_for(part.name))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import copy
 import math
-from typing import Any, Final
+from typing import Any
 
 from articad.aliases import Json
 from articad.plan.fields import is_name
 from articad.plan.short_copies import plane_of
 from articad.plan.short_texts import AT_JOINT, by_name, frame, is_vector
-from articad.plan.standard_joints import STANDARD, made_of, pin_of
+from articad.plan.standard_joints import FEATURES, STANDARD, made_of, pin_of
 
 
 class Joints:
@@ -141,12 +141,6 @@ def _write_out(joint: Json, source: Json) -> None:
     joint.update(image | own)
 
 
-FEATURES: Final = (
-    *("pin", "bore", "length", "depth", "span", "gap", "reach", "groove", "width", "shaft", "head", "thick", "tail"),
-    *("bar_x", "bar_y", "slot_x", "slot_y", "ball", "socket"),
-)
-
-
 def _image(place: Json | None, derive: Any) -> Json | None:
     """Return a place moved as a copy is moved: by a plane across an axis of the assembly, or by a shift; None for other motions."""
     if place is None or not isinstance(derive, dict):
@@ -187,4 +181,4 @@ def _negative(value: Any) -> Any:
     return -value if isinstance(value, int | float) and value else value if not value else f"-({value})"
 
 
-__all__ = ["FEATURES", "Joints"]
+__all__ = ["Joints"]

@@ -6,7 +6,7 @@ A script adds them with `part.made(shape)`; the checks measure them as they meas
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Container, Iterable, Mapping
 from typing import Any, Final
 
 from articad.aliases import Json
@@ -20,6 +20,42 @@ STANDARD: Final[Mapping[str, str]] = {
     "ball_socket": "ball",
 }
 """The plan's joint type by standard joint."""
+
+FEATURES: Final[Mapping[str, str]] = {
+    "pin": "the diameter of the pin",
+    "length": "the length of the pin or bar",
+    "head": "the diameter of the pin's head",
+    "thick": "the thickness of the pin's head",
+    "tail": "the length of the shank behind the pin's head",
+    "bore": "the diameter of the bore",
+    "depth": "the depth of the hole",
+    "span": "the length of the pin across the fork",
+    "gap": "the width of the fork's opening",
+    "reach": "the radius within which the fork is open",
+    "groove": "the diameter of the groove",
+    "width": "the width of the groove",
+    "shaft": "the diameter of the shaft around the groove",
+    "bar_x": "the width of the bar along x",
+    "bar_y": "the width of the bar along y",
+    "slot_x": "the width of the slot along x",
+    "slot_y": "the width of the slot along y",
+    "ball": "the diameter of the ball",
+    "socket": "the diameter of the socket",
+}
+"""What a dimension `<connector>_<feature>` of a standard joint is, by its feature."""
+_BESIDE: Final[Mapping[str, tuple[str, ...]]] = {
+    "length": ("pin", "bar_x"),
+    "depth": ("bore", "slot_x"),
+    **dict.fromkeys(("head", "thick", "tail", "span"), ("pin",)),
+    "gap": ("reach",),
+    "reach": ("gap",),
+    "width": ("groove",),
+    "shaft": ("groove",),
+    "groove": ("shaft",),
+}
+"""Features beside one of which alone a feature is one of a standard joint: `lid_length` may also be the length of a lid."""
+CUT: Final = frozenset({"bore", "depth", "gap", "reach", "groove", "width", "slot_x", "slot_y", "socket"})
+"""Features that take material away."""
 
 CLEARANCE_MM: Final = 0.15
 """Half the difference of diameters where a plan states none: turns and slides freely, also when printed or sawn."""
@@ -101,10 +137,20 @@ def is_pin(dimensions: Mapping[str, Any]) -> bool:
     return len({joint for joint, _ in found}) == 1 and {"pin", "length"} <= sizes <= {"pin", "length", "head", "thick", "tail"}
 
 
+def feature_of(dimension: str, dimensions: Container[str], connectors: Iterable[str]) -> tuple[str, str] | None:
+    """Return the connector and the feature of a standard joint that a dimension of a part is named after; None for other dimensions."""
+    for name in connectors:
+        feature = dimension.removeprefix(f"{name}_")
+        beside = _BESIDE.get(feature, (feature,))
+        if f"{name}_{feature}" == dimension and feature in FEATURES and any(f"{name}_{other}" in dimensions for other in beside):
+            return name, feature
+    return None
+
+
 def _wider(size: Any, clearance: Any) -> Any:
     if isinstance(size, int | float) and isinstance(clearance, int | float):
         return round(size + 2 * clearance, 9)
     return f"({size})+2*({clearance})" if clearance else size
 
 
-__all__ = ["CLEARANCE_MM", "STANDARD", "is_pin", "made_of", "pin_of"]
+__all__ = ["CLEARANCE_MM", "CUT", "FEATURES", "STANDARD", "feature_of", "is_pin", "made_of", "pin_of"]

@@ -45,6 +45,7 @@ VOLUMES = {  # mm³, in closed form
     "linear_pattern": BLOCK - 3 * BORE,
     "polar_pattern": pi * 40**2 * 20 - 4 * BORE,
     "connector": BLOCK,
+    "made": BLOCK,
     "settle": BLOCK - 2**2 / 2 * 20,
 }
 

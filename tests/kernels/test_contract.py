@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import pytest
 from hypothesis import given
@@ -177,6 +177,36 @@ def test_a_dimension_that_another_body_swallows_is_not_called_a_literal_number(b
     assert build(
         "return Box(d['w'], 10, 10) + Cylinder(1, 30 * d['inner']), {}", dimensions={"w": 10.0, "inner": 3.0}, probe=True
     ).findings.ok
+
+
+AWAY: Final = {"bore": (0, 20, 0), "pin": (0, 0, -4), "depth": (0, 0, -6), "groove": (0, 0, 30)}
+OF_JOINTS: Final = {
+    "bore": ({"swing_bore": 3.0}, "the diameter of the bore", "only air"),
+    "pin": ({"swing_pin": 3.0, "swing_length": 4.0}, "the diameter of the pin", "inside the part's own body"),
+    "depth": ({"swing_bore": 3.0, "swing_depth": 12.0}, "the depth of the hole", "ends in the air"),
+    "groove": ({"swing_groove": 3.0, "swing_width": 1.0, "swing_shaft": 4.0}, "the diameter of the groove", "only air"),
+}
+
+
+@pytest.mark.parametrize("kind", OF_JOINTS)
+def test_a_feature_of_a_standard_joint_without_effect_is_told_with_its_joint(build: Build, kind: str) -> None:
+    """A script that makes none of them is told how; of one that makes them, the place is wrong. The cutter of a groove may stand in the air."""
+    dimensions, what, why = OF_JOINTS[kind]
+    connectors = {"swing": frame(AWAY[kind], [{"name": "door", "type": "revolute"}])}
+    for body, words in (("part.made(Box(10, 10, 10))", why), ("Box(10, 10, 10), part.connectors", "Return part.made(shape)")):
+        found = build(f"return {body}", dimensions=dimensions, connectors=connectors, probe=True).findings.of("W_DIMENSION_UNUSED")
+        finding = next(one for one in found if one.where == f"parts.lug.dimensions.swing_{kind}")
+        assert f"It is {what} of standard joint 'door'." in finding.message
+        assert words in f"{finding.message} {finding.hint}"
+        assert not any("shaft" in one.where for one in found)
+
+
+def test_a_dimension_that_is_only_named_like_a_feature_is_that_of_no_joint(build: Build) -> None:
+    connectors = {"lid": frame()}
+    (finding,) = build(
+        "return Box(10, 10, 10), part.connectors", dimensions={"lid_length": 5.0}, connectors=connectors, probe=True
+    ).findings
+    assert "joint" not in finding.message
 
 
 def test_a_script_may_return_the_planned_connectors(build: Build) -> None:

@@ -21,6 +21,7 @@ from articad import examples
 from articad.mcp.server import make_server
 from articad.mcp.workbench import BRIEF_BYTES, FULL_BYTES, SHOWN_FINDINGS, condensed
 from tests.coroutines import finish
+from tests.plan.test_short_texts import FLAT, ROD
 
 Json = dict[str, Any]
 Work = Callable[["Agent"], Awaitable[None]]
@@ -146,6 +147,21 @@ def test_scripts_in_files_are_built_together_and_a_plan_is_edited_by_address(tmp
     (tmp_path / "link.py").symlink_to("/etc/passwd")
     over_stdio(tmp_path, work)
     assert any(message and message.startswith("part: ") for message in progress)
+
+
+def test_pins_that_joints_make_are_built_without_a_script(tmp_path: Path) -> None:
+    async def work(agent: Agent) -> None:
+        await agent.call("check_plan", design="swing", plan=ROD, script=FLAT)
+        built = await agent.call("build_parts", design="swing")
+        pins = {
+            "bolt": "14 x 14 x 24.4 mm, 0.01288 kg",
+            "bolt_2": "14 x 14 x 24.4 mm, 0.01288 kg",
+            "stud": "12 x 12 x 20.2 mm, 0.008069 kg",
+        }
+        assert {name: line for name, line in built["parts"].items() if name in pins} == pins
+        assert (await agent.call("build_part", design="swing", part="bolt"))["ok"]
+
+    over_stdio(tmp_path, work)
 
 
 def test_a_file_is_adopted_and_its_proof_is_checked_by_another(tmp_path: Path) -> None:

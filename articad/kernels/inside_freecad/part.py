@@ -29,6 +29,7 @@ _AXES = {"X": "X_Axis", "Y": "Y_Axis", "Z": "Z_Axis"}
 _SIDES = {"X": App.Vector(1, 0, 0), "Y": App.Vector(0, 1, 0), "Z": App.Vector(0, 0, 1)}
 _FUNCTIONS = {"abs", "acos", "asin", "atan", "atan2", "ceil", "cos", "floor", "hypot", "max", "min", "sin", "sqrt", "tan", "pi"}
 _NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
+_THROUGH, _BEYOND = 1e4, 0.5  # mm: half the length of a rod that has none, and how far the cutter of a groove stands out of its shaft
 
 Json = dict[str, Any]
 Value = float | str
@@ -466,6 +467,75 @@ class Authoring:
         turn = f"create(<<rotation>>; {axes[0]}; vector(0; 0; 0); {axes[1]}; <<ZXY>>)"
         system.setExpression("Placement", f"placement({base}; {turn})")
         return system
+
+    def made(self, body: Any = None) -> tuple[Any, dict[str, Json]]:
+        """Add what standard joints need, at each connector by the names of its dimensions; return what `build(part)` returns.
+
+        The features are those of `part.made` of the other kernel: `<connector>_pin` and `_bore`, `_bar_x` and `_slot_x`, `_ball` and
+        `_socket`, `_gap` and `_groove`. They stand where the plan puts the connector.
+
+        Args:
+            body: `part.body`; None for a part of such features alone, such as a pin.
+
+        Example:
+            part.box((0, 0, 0), ("width", "depth", "height"))
+            body, connectors = part.made(part.body)
+        """
+        if body is not None:
+            for name in self._having("gap"):  # first, so that no fork loses its pin
+                self.pocket(self._disc(name, "reach", 1), f"{name}_gap", both=True, name="Fork")
+        for name in self._having("span"):  # the pin of a fork
+            self.pad(self._disc(name, "pin"), f"{name}_span", both=True, name="Pin")
+        self._ends("pin", "bar", "ball", "length", cut=False, without=self._having("span"))
+        for name in self._having("head"):
+            self.pad(self._disc(name, "head"), f"{name}_thick", back=True, name="Head")
+        for name in self._having("tail"):
+            behind = f"{name}_tail + {name}_thick" if f"{name}_thick" in self.dimensions else f"{name}_tail"
+            self.pad(self._disc(name, "pin"), behind, back=True, name="Tail")
+        for name in self._having("groove"):
+            ring = self._disc(name, "groove")
+            self.circle(ring, 0, 0, f"{name}_shaft / 2 + {_BEYOND}")
+            self.pocket(ring, f"{name}_width", both=True, name="Groove")
+        self._ends("bore", "slot", "socket", "depth", cut=True)  # last, so that no pin fills a bore
+        return self.body, {name: {axis: getattr(frame, axis) for axis in "ozx"} for name, frame in self.connectors.items()}
+
+    def _ends(self, rod: str, bar: str, ball: str, length: str, *, cut: bool, without: Sequence[str] = ()) -> None:
+        """Add, or cut, the rods, bars and balls of one side of standard joints."""
+        for name in self._having(rod):
+            if name not in without:
+                self._long(self._disc(name, rod), f"{name}_{length}", cut=cut, name=rod.capitalize())
+        for name in self._having(f"{bar}_x"):
+            outline = self._at_connector(name)
+            x, y = f"{name}_{bar}_x", f"{name}_{bar}_y"
+            self.rectangle(outline, f"-{x} / 2", f"-{y} / 2", x, y)
+            self._long(outline, f"{name}_{length}", cut=cut, name=bar.capitalize())
+        for name in self._having(ball):
+            self.sphere(self.connectors[name].o, f"{name}_{ball} / 2", cut=cut, name=ball.capitalize())
+
+    def _long(self, outline: Any, length: str, *, cut: bool, name: str) -> None:
+        """Add or cut an outline along its normal over a length, or without one far to both sides."""
+        known = length in self.dimensions
+        if cut:
+            self.pocket(outline, length if known else None, back=known, name=name)
+        else:
+            self.pad(outline, length if known else 2 * _THROUGH, both=not known, name=name)
+
+    def _having(self, size: str) -> list[str]:
+        """Return the connectors that have a dimension of this kind."""
+        return [name for name in self.connectors if f"{name}_{size}" in self.dimensions]
+
+    def _disc(self, name: str, size: str, share: int = 2) -> Any:
+        """Return a sketch at a connector with a circle about its axis: a dimension over 2 is the radius, over 1 the radius itself."""
+        sketch = self._at_connector(name)
+        self.circle(sketch, 0, 0, f"{name}_{size} / {share}")
+        return sketch
+
+    def _at_connector(self, name: str) -> Any:
+        """Start a sketch in a connector's plane: its x and y are the connector's, its normal is the connector's z."""
+        frame, sketch = self.connectors[name], self.sketch(name=f"At_{name}")
+        x, z = App.Vector(*frame.x), App.Vector(*frame.z)
+        sketch.AttachmentOffset = App.Placement(App.Vector(*frame.o), App.Rotation(x, z.cross(x), z, "ZXY"))
+        return sketch
 
     def settle(self) -> None:
         """Recompute until the names of edges stay: call it before a fillet or chamfer names any.
