@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from articad.assembly import Assembly
 
 PROGRAM = Path(freecad_install.__file__).parent / "inside_freecad" / "document.py"
+MOST_OPENED = 500
+"""Parts up to which FreeCAD opens what was written: its time to open, recompute and solve grows with the square of their number."""
 _SECONDS, _SECONDS_A_PART, _SECONDS_A_PAGE = 120.0, 5.0, 60.0
 _PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that FreeCAD always writes
 
@@ -64,19 +66,21 @@ def write_freecad(
         split: Write one file for each part, and one for the parameters, in a folder beside the document, which links to them.
         drawings: Add a dimensioned page for each part, one of the assembly with balloons and parts list, and an exploded view.
         freecad: The FreeCAD that writes it; by default the installed one. Without FreeCAD, the document is written as by
-            `write_freecad_alone`.
+            `write_freecad_alone`, and by default so is one of more than `MOST_OPENED` parts, unless only FreeCAD can copy its features.
         trees: Give parts whose scripts are written in build123d their feature trees, which are traced, tried at other dimensions, and
             cached, which takes seconds for each part the first time; without them such parts are frozen.
 
     Returns:
-        One file, `<name>.FCStd`, the same bytes each time on the same FreeCAD, and with `split` the files in `<name>_parts`. It was
-        opened in FreeCAD again: the findings name each part whose shape is not the assembly's, and say whether FreeCAD's solver agrees with the placements.
+        One file, `<name>.FCStd`, the same bytes each time on the same FreeCAD, and with `split` the files in `<name>_parts`. Where
+        FreeCAD wrote it, FreeCAD opened it again: the findings name each part whose shape is not the assembly's, and say whether FreeCAD's solver agrees with the placements.
 
     Raises:
         UnrepresentableError: If `strict` and something is lost.
         ExportError: If FreeCAD fails.
         KernelUnavailableError: If there is no FreeCAD, and `drawings` is asked for.
     """
+    if freecad is None and len(assembly.parts) > MOST_OPENED and not (drawings or trees or _has_features(assembly)):
+        return write_freecad_alone(assembly, strict=strict, split=split)
     try:
         freecad = freecad or freecad_install.find()
     except KernelUnavailableError:
@@ -115,6 +119,11 @@ def _drawn(assembly: Assembly, job: Json, folder: Path, freecad: FreeCAD) -> Jso
         raise _failed(ended.said, late=ended.late)
     report: Json = json.loads(read_left(folder / "drawn.json", RECORD_BYTES))
     return report
+
+
+def _has_features(assembly: Assembly) -> bool:
+    """Return whether FreeCAD built a part, so that the document can have its features."""
+    return any((realised.built.folder / DOCUMENT).is_file() for realised in assembly.realised.values())
 
 
 def _trees(assembly: Assembly, freecad: FreeCAD) -> dict[str, PartTree]:
@@ -161,13 +170,17 @@ def write_freecad_alone(assembly: Assembly, *, strict: bool = False, split: bool
         content, look = document(job.to_json(), Path(name), job.names)
     if strict:
         refuse(job.losses)
-    unseen = Finding(
-        code="I_FREECAD_UNSEEN",
-        where="assembly",
-        message="The document was written without FreeCAD: its shapes are B-rep, and FreeCAD's solver did not check it.",
-        hint=f"{freecad_install.HOW_TO_GET}.",
-    )
-    return Bundle(_files(job.name, content, look, split=split), job.losses, Findings([unseen]))
+    return Bundle(_files(job.name, content, look, split=split), job.losses, Findings([_unseen(len(assembly.parts))]))
+
+
+def _unseen(parts: int) -> Finding:
+    """Return the finding that FreeCAD did not check a document, and how to let it."""
+    message = "The document was written without FreeCAD: its shapes are B-rep, and FreeCAD's solver did not check it."
+    hint = f"{freecad_install.HOW_TO_GET}."
+    if parts > MOST_OPENED:
+        message = f"{message} FreeCAD's time grows with the square of the number of parts, {parts} here; up to {MOST_OPENED} are checked."
+        hint = "Open it in FreeCAD to check it, or call write_freecad(assembly, freecad=articad.kernels.freecad_install.find())."
+    return Finding(code="I_FREECAD_UNSEEN", where="assembly", message=message, hint=hint)
 
 
 def _files(name: str, content: bytes, look: Appearance, *, split: bool) -> dict[str, bytes]:

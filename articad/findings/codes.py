@@ -436,7 +436,7 @@ CODES: dict[str, Code] = {
         "export",
         None,
         "A FreeCAD document was written without FreeCAD, so its solver did not check it.",
-        "Open it in FreeCAD 1.0 or later; install FreeCAD to write feature trees as well.",
+        "Open it in FreeCAD 1.0 or later. Install FreeCAD to write feature trees as well; up to 500 parts it checks the document.",
     ),
     "E_FREECAD_JOINT": Code(
         "import",

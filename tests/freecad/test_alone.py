@@ -14,6 +14,7 @@ from articad import cli
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError, UnrepresentableError
+from articad.export import freecad as freecad_export
 from articad.export import freecad_native
 from articad.export.freecad import write_freecad, write_freecad_alone
 from articad.export.freecad_file import mesh_kernel
@@ -21,6 +22,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.shapes import box
 from articad.importers.freecad import read_freecad
 from articad.kernels import freecad_install
+from tests.chains import chain
 from tests.freecad import opened
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -135,6 +137,18 @@ def test_without_freecad_documents_are_written_and_what_is_lost_is_told(monkeypa
     assert [loss.lost for loss in bundle.losses if loss.where == "parts.leg"]
     with pytest.raises(UnrepresentableError):
         write_freecad(assembly("geared_four_bar"), strict=True)
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+def test_a_document_of_many_parts_says_that_freecad_did_not_check_it_and_how_to_let_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(freecad_export, "MOST_OPENED", 3)
+    assert not write_freecad(chain(3)).findings
+    (unseen,) = write_freecad(chain(4)).findings
+    assert unseen.code == "I_FREECAD_UNSEEN"
+    assert "4 here; up to 3 are checked" in unseen.message
+    assert "write_freecad(assembly, freecad=articad.kernels.freecad_install.find())" in unseen.hint
+    assert not write_freecad(chain(4), freecad=freecad_install.find()).findings
 
 
 def test_without_freecad_the_commands_that_need_it_say_so_in_a_sentence(
