@@ -34,6 +34,12 @@ def block(name: str, size: tuple[float, float, float] = (20, 30, 40), **connecto
     )
 
 
+def of_density(assembly: Assembly, density: float) -> Assembly:
+    """Return an assembly with parts of another density [kg/m³]."""
+    parts = {name: replace(part, mass=part.solid.mass(density)) for name, part in assembly.parts.items() if part.solid is not None}
+    return replace(assembly, parts=parts)
+
+
 def all_joint_kinds() -> Assembly:
     """A base with one branch per kind: both mates, joints declared child to parent, an endless revolute, rests off zero."""
     tilted = frame(at=(10, -20, 30), z=(0.3, -0.4, 0.8), x=(1, 0, -0.375))

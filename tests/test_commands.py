@@ -450,6 +450,8 @@ def test_a_print_pack_is_held_to_the_process_it_is_meant_for(tmp_path: Path, rep
     for joint in plan["joints"]:
         joint.pop("fit", None)
     next(joint for joint in plan["joints"] if joint["type"] == "revolute")["fit"] = {"gap_mm": [0.15, 0.3]}
+    for material in plan["materials"]:
+        material["density_kg_m3"] = 1240
     (tmp_path / "plan").mkdir()
     (tmp_path / "plan/plan.json").write_text(json.dumps(plan))
     shutil.copytree(folder / "parts", tmp_path / "plan/parts")

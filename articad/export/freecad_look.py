@@ -32,6 +32,7 @@ PROGRAM = Path(freecad_install.__file__).parent / "inside_freecad" / "examine.py
 SAME = 1e-6  # of a volume, relative; of a centre, relative to the part's diagonal
 SAME_MESH = 1e-4  # likewise of a mesh: FreeCAD keeps points in single precision
 SOLVED_MM, SOLVED_RAD = 1e-6, 1e-8  # by which FreeCAD's solver may move a part
+_FAULTS = 5  # of a part that are told
 _SECONDS, _SECONDS_A_PART, _SECONDS_A_PAGE = 120.0, 5.0, 60.0
 WITH_THREADS = frozenset(sandbox.LAYERS) - {"seccomp"}
 """Layers of the sandbox for a document with drawings: FreeCAD projects views in threads, which seccomp refuses."""
@@ -124,7 +125,9 @@ def differences(row: Mapping[str, Any] | None, part: Part) -> Iterator[tuple[str
         yield from _off("volume", abs(row["volume"]) - volume, volume, SAME_MESH, "mm³")
         return
     if not row["valid"] or row["solids"] != 1:
-        yield "is not one valid solid", 1.0
+        count = row["solids"]
+        what = "is not a valid solid" if count == 1 else "has no solid" if not count else f"has {count} solids, not one"
+        yield "; ".join([what, *row.get("faults", ())[:_FAULTS]]), 1.0
         return
     if solid is None:
         return

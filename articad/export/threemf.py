@@ -20,6 +20,8 @@ from articad.export.names import FileNames
 from articad.export.product import of_the_product
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Part
+from articad.kernels.contract import LIGHT
 from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
@@ -54,7 +56,8 @@ def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "f
         assembly: What to write. A part whose mesh is open is omitted with an error; a part without any shape is a loss, because there is
             nothing to print.
         strict: Refuse losses of motion, mass or shape; printed parts have no joints, so only a single body passes.
-        process: The printing process: joints whose declared gap is smaller than the process needs are findings.
+        process: The printing process: joints whose declared gap is smaller than the process needs are findings, if both parts are as
+            light as plastic or wood.
 
     Returns:
         `<part>.3mf` for each part, the losses, and findings about clearance.
@@ -154,12 +157,14 @@ def _package(mesh: TriMesh, name: str, color: str) -> bytes:
 
 
 def _clearances(assembly: Assembly, process: Process) -> list[Finding]:
-    """Return a finding for each joint whose declared gap is smaller than the process needs."""
+    """Return a finding for each joint of two parts that may be printed, whose declared gap is smaller than the process needs."""
     needed = CLEARANCE_MM[process]
     findings = []
     for joint in assembly.joints:
         fit = assembly.fits.get(joint.name)
         if joint.type is JointType.FIXED or fit is None or fit.gap_min is None or fit.gap_min >= needed:
+            continue
+        if not all(_may_be_printed(assembly.parts[name]) for name in (joint.parent, joint.child)):
             continue
         findings.append(
             Finding(
@@ -174,6 +179,12 @@ def _clearances(assembly: Assembly, process: Process) -> list[Finding]:
             )
         )
     return findings
+
+
+def _may_be_printed(part: Part) -> bool:
+    """Return whether a part is as light as plastic, or has no known mass."""
+    solid, mass = part.solid, part.mass
+    return solid is None or mass is None or mass.mass <= LIGHT * 1e-9 * solid.volume
 
 
 def _features(assembly: Assembly) -> list[Feature]:

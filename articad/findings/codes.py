@@ -314,8 +314,8 @@ CODES: dict[str, Code] = {
     "I_REDUNDANT": Code(
         "plan",
         None,
-        "A loop has constraints that it does not need.",
-        "In the real mechanism, replace the named joint by a ball or cylindrical joint.",
+        "A closed loop is held more often than its motion needs, so that only exact parts fit without play.",
+        "The plan may stay as it is. In the real mechanism, leave its joints some play, or change the named joints to ball or cylindrical ones.",
     ),
     # --- build
     "E_SCRIPT_MISSING": Code("build", "code", "A part has no script.", "Write parts/<part>.py with a function build(part)."),
@@ -668,7 +668,10 @@ CODES: dict[str, Code] = {
     ),
     "E_RUN": Code("import", None, "A run directory cannot be used.", "Name another directory, or wait for the process that uses it."),
     "W_PRINT_CLEARANCE": Code(
-        "export", "design", "A joint's gap is smaller than the printing process needs.", "Widen the gap, or use another process."
+        "export",
+        "design",
+        "A joint's gap between parts that may be printed is smaller than the process needs.",
+        "Widen the gap, or use another process.",
     ),
     "E_MIMIC_FIT": Code(
         "export", None, "A closed loop cannot be written as mimic joints within 0.1 mm.", "Use another way to write loops, or MJCF."

@@ -15,6 +15,7 @@ from typing import Any
 from build123d import Shape
 from OCP.BRepCheck import BRepCheck_Analyzer
 
+from articad.errors import did_you_mean
 from articad.kernels import measure
 from articad.kernels.made import made
 from articad.kernels.tessellation import Same
@@ -35,10 +36,15 @@ class Dimensions(dict[str, Any]):
         return self[name] if dict.__contains__(self, name) else super().__getattribute__(name)
 
     def __getattr__(self, name: str) -> Any:
-        try:
-            return self[name]
-        except KeyError:
-            raise AttributeError(f"the part has no dimension {name!r}") from None
+        if name not in self:
+            raise AttributeError(self._missed(name))
+        return self[name]
+
+    def __missing__(self, name: str) -> Any:
+        raise KeyError(self._missed(name))
+
+    def _missed(self, name: str) -> str:
+        return f"The part has no dimension {name!r}.{did_you_mean(str(name), self)} It has {', '.join(self) or 'none'}."
 
 
 class NotAPart(Exception):  # noqa: N818 - not an error in the script's code, but a message to its author

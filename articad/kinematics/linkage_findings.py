@@ -216,12 +216,14 @@ def _redundancy_findings(mechanism: Mechanism) -> list[Finding]:
     for one in redundancies(
         mechanism.parts, mechanism.ground, mechanism.layout, branch.system, branch.analysis, branch.Q_rest, release=few
     ):
-        message = f"Loop {'-'.join(one.loop)} has {one.count} constraint(s) that it does not need: {', '.join(one.directions)}."
+        twice = "once" if one.count == 1 else f"{one.count} times"
+        message = f"The closed loop {'-'.join(one.loop)} is held {twice} more than its motion needs: against {', '.join(one.directions)}."
         changes = " and ".join(f"{name!r} to {new}" for name, new in one.release)
         hint = (
-            f"In the real mechanism, release {changes}."
+            f"The plan may stay as it is. Real parts are never exact and would jam: leave their joints some play, or change {changes}."
             if changes
-            else "In the real mechanism, replace joints of the loop by ball or cylindrical joints."
+            else "The plan may stay as it is. Real parts are never exact and would jam: leave their joints some play, or make some of them "
+            "ball or cylindrical joints."
         )
         found.append(Finding(code="I_REDUNDANT", where=f"joints.{one.joint}", message=message, hint=hint, parts=one.loop, value=one.count))
     return found

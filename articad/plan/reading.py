@@ -18,7 +18,8 @@ from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.plan.fields import NAME_RULE, PlanObject, is_name
 from articad.plan.joint_forms import JOINT_TYPES, JointForm
-from articad.plan.short import expanded, functions_of, is_short, joints_with_a_place
+from articad.plan.short import copied_fields, expanded, functions_of, is_short, joints_with_a_place
+from articad.plan.short_texts import CLAUSES
 from articad.plan.signatures import Functions
 from articad.texts import escaped
 
@@ -123,7 +124,7 @@ def from_json(form: type[F], document: Any, functions: Functions | None = None) 
     """
     if not isinstance(document, Mapping):
         raise _refused([_finding("E_SCHEMA", "plan", f"A plan is an object {{…}}, not {_shown(document)}.", "Give one JSON object.")])
-    places = joints_with_a_place(document)
+    places, copies = joints_with_a_place(document), copied_fields(document)
     short = is_short(document)
     document = expanded(document, functions)
     try:
@@ -131,7 +132,7 @@ def from_json(form: type[F], document: Any, functions: Functions | None = None) 
     except ValidationError as error:
         details = error.errors(include_url=False)
     found = [_translated(form, document, detail) for detail in details[:MOST_FINDINGS]]
-    found = _with_places(found, document, places) if short else found
+    found = _without_copies(_with_places(found, document, places), copies) if short else found
     if (more := len(details) - MOST_FINDINGS) > 0:
         found.append(_finding("E_SCHEMA", "plan", f"There are {more} more errors, which are not listed.", "Correct the listed ones first."))
     raise _refused(found) from None
@@ -166,6 +167,19 @@ def _with_places(found: list[Finding], document: Any, places: Sequence[str]) -> 
     return [_for_a_text(one) for one in found if one.code != "E_SCHEMA" or one.where not in about] + told
 
 
+def _without_copies(found: list[Finding], copies: Mapping[str, tuple[str, frozenset[str]]]) -> list[Finding]:
+    """Leave out what is told of a part or joint because it is like another, of which the same is told."""
+    told = {(one.where, one.message) for one in found}
+
+    def is_copied(one: Finding) -> bool:
+        kind, _, rest = one.where.partition(".")
+        name, _, field = rest.partition(".")
+        source, own = copies.get(f"{kind}.{name}", ("", frozenset()))
+        return bool(field) and field.partition(".")[0].partition("[")[0] not in own and (f"{source}.{field}", one.message) in told
+
+    return [one for one in found if not is_copied(one)]
+
+
 _TEXTS: Final = (
     (
         re.compile(r"parts\.\w+\.dimensions"),
@@ -174,10 +188,19 @@ _TEXTS: Final = (
     (re.compile(r"parameters"), 'Give "width = 400, low = -width / 2", or an object by name.'),
 )
 """Hints for texts of the short form that cannot be read, by their addresses."""
+_UNKNOWN: Final = re.compile(r"There is no field '(\w+)' here\.")
+_BELONGS: Final = {
+    "blind": "It belongs to a hinge, dowel or drawer_slide that states the length of its pin or bar, and no depth.",
+    **dict.fromkeys(("head_mm", "tail_mm"), 'It belongs to a hinge on a pin of its own, "hinge PARENT CHILD PIN".'),
+}
+"""Hints for fields of standard joints where they have no meaning."""
 
 
 def _for_a_text(one: Finding) -> Finding:
     """Return a finding with a hint about the short form, if it is about a text there."""
+    if one.where.startswith("joints.") and (unknown := _UNKNOWN.fullmatch(one.message)):
+        meant = _BELONGS.get(unknown[1]) or did_you_mean(unknown[1], CLAUSES).strip()
+        return dataclasses.replace(one, hint=f"{meant} Otherwise leave it out.") if meant else one
     hint = next((hint for address, hint in _TEXTS if one.code == "E_SCHEMA" and address.fullmatch(one.where)), None)
     return one if hint is None or " cannot be " not in one.message else dataclasses.replace(one, hint=hint)
 

@@ -90,6 +90,19 @@ def functions_of(document: Any, plan: Path) -> Functions | None:
     return functions_beside(plan, [name for name, part in parts.items() if "derive" not in part])
 
 
+def copied_fields(document: Any) -> dict[str, tuple[str, frozenset[str]]]:
+    """Return, by the address of each part and joint that is like another, that other's address and the fields that it states itself."""
+    found: dict[str, tuple[str, frozenset[str]]] = {}
+    if not is_short(document):
+        return found
+    for kind, form in (("parts", _part), ("joints", _joint)):
+        entries = by_name(_listed(document.get(kind), form))
+        for name, entry in entries.items():
+            if isinstance(source := entry.get("like"), str) and source in entries:
+                found[f"{kind}.{name}"] = f"{kind}.{source}", frozenset(entry)
+    return found
+
+
 def joints_with_a_place(document: Any) -> list[str]:
     """Return the names of the joints of a document in the short form that state a place, at which other joints may stand."""
     joints = objects(_listed(document.get("joints"), _joint)) if is_short(document) else []
@@ -174,4 +187,4 @@ def _declare_materials(plan: Json) -> None:
             declared.append({"name": name, "density_kg_m3": density, "color": color})
 
 
-__all__ = ["MATERIALS", "SHORT", "expanded", "functions_of", "is_short", "joints_with_a_place"]
+__all__ = ["MATERIALS", "SHORT", "copied_fields", "expanded", "functions_of", "is_short", "joints_with_a_place"]

@@ -28,6 +28,8 @@ _JOINT_KEYS: Final[Mapping[str, str]] = {
     "on": "pin_on",
 }
 """Fields of a joint by their short keys."""
+CLAUSES: Final = (*_JOINT_KEYS, *_JOINT_KEYS.values(), "at", "rest", "fit", "mate", "driver", "blind")
+"""What the clauses of a joint begin with, and the fields that they stand for."""
 _WORDS: Final = frozenset({"endless", "auto", "child", "parent", "opposed", "aligned"})
 _PART_KEYS: Final = frozenset({"material", "at", "turn", "like", "color", "envelope"})
 AT_JOINT: Final = "joint"
@@ -184,4 +186,4 @@ def opened(document: Json, addresses: Mapping[str, Any]) -> Json:
     return document
 
 
-__all__ = ["AT_JOINT", "by_name", "equations", "frame", "is_vector", "joint", "objects", "opened", "part"]
+__all__ = ["AT_JOINT", "CLAUSES", "by_name", "equations", "frame", "is_vector", "joint", "objects", "opened", "part"]

@@ -56,6 +56,8 @@ _BESIDE: Final[Mapping[str, tuple[str, ...]]] = {
 """Features beside one of which alone a feature is one of a standard joint: `lid_length` may also be the length of a lid."""
 CUT: Final = frozenset({"bore", "depth", "gap", "reach", "groove", "width", "slot_x", "slot_y", "socket"})
 """Features that take material away."""
+_BLIND: Final = frozenset({"hinge", "dowel", "drawer_slide"})
+"""Standard joints whose hole may end where their pin or bar ends."""
 
 CLEARANCE_MM: Final = 0.15
 """Half the difference of diameters where a plan states none: turns and slides freely, also when printed or sawn."""
@@ -65,8 +67,8 @@ def made_of(joint: Json) -> dict[str, dict[str, Any]]:
     """Turn a standard joint into a joint of the plan, in place; return the dimensions of its features by side, "parent" and "child".
 
     The joint may have `pin_mm` (hinge, dowel: diameter), `bar_mm` [x, y] (drawer_slide) or `ball_mm` (ball_socket: diameter), `length_mm`
-    of the pin or bar from the joint's origin along its +z (0: the part has it already), `depth_mm` of the hole (without it, the hole goes through), `clearance_mm`, and
-    `pin_on`: the side that has the pin, bar or ball ("parent").
+    of the pin or bar from the joint's origin along its +z (0: the part has it already), `depth_mm` of the hole, or `blind`: the hole ends `clearance_mm` behind the end of the pin
+    or bar (without either, it goes through), and `pin_on`: the side that has the pin, bar or ball ("parent").
 
     A `pin_in_clevis` has a pin of `length_mm` across a fork, centred on the joint, and an eye of `eye_mm` along z between the cheeks; the fork is
     cut out within `reach_mm` of the axis. A `snap_ring` sits in a groove of `groove_mm` [diameter, width] in a shaft of `shaft_mm`.
@@ -74,8 +76,9 @@ def made_of(joint: Json) -> dict[str, dict[str, Any]]:
     kind = joint["type"]
     joint["type"] = STANDARD[kind]
     size = joint.pop({"drawer_slide": "bar_mm", "ball_socket": "ball_mm"}.get(kind, "pin_mm"), None)
-    length, depth = joint.pop("length_mm", None), joint.pop("depth_mm", None)
+    length = joint.pop("length_mm", None)
     clearance = joint.pop("clearance_mm", 0 if kind == "dowel" else CLEARANCE_MM)
+    depth = _depth(joint, kind, length, clearance)
     inner = joint.get("pin_on", "parent")
     if inner in ("parent", "child"):
         joint.pop("pin_on", None)
@@ -109,11 +112,21 @@ def made_of(joint: Json) -> dict[str, dict[str, Any]]:
     return {inner: pin, outer: hole}
 
 
+def _depth(joint: Json, kind: str, length: Any, clearance: Any) -> Any:
+    """Take the depth of the hole out of a joint; None if it goes through."""
+    depth = joint.pop("depth_mm", None)
+    if joint.get("blind") is True and kind in _BLIND and length and depth is None:
+        del joint["blind"]
+        return _sum(length, clearance)
+    return depth
+
+
 def pin_of(joint: Json, name: str) -> tuple[Json, dict[str, Any]]:
     """Let a hinge turn on a pin that is a part of its own, in place; return the joint that fixes the pin, and what the pin adds to its shank.
 
     The joint stands where the shank leaves the head, its +z along the shank of `length_mm`. `head_mm` [diameter, thickness] lies behind it, and
-    `tail_mm` of shank behind the head. The pin is pressed into the parent; the child turns on it.
+    `tail_mm` of shank behind the head. The pin is pressed into the parent; the child turns on it. With `blind`, the hole of the parent ends where the
+    shank does, too, unless the parent is behind the head.
 
     Args:
         joint: A hinge.
@@ -124,6 +137,8 @@ def pin_of(joint: Json, name: str) -> tuple[Json, dict[str, Any]]:
     head, tail = joint.pop("head_mm", None), joint.pop("tail_mm", None)
     press = {"name": name, "type": "dowel", "parent": joint.get("parent"), "child": name, "pin_on": "child", "length_mm": 0}
     press |= {key: copy.deepcopy(joint[key]) for key in ("pin_mm", "at") if key in joint}
+    if joint.get("blind") is True and tail is None and joint.get("length_mm"):
+        press["depth_mm"] = joint["length_mm"]
     joint["parent"] = name
     sizes = {} if head is None else dict(zip(("head", "thick"), head if isinstance(head, list) else [head], strict=False))
     sizes |= {} if tail is None else {"tail": tail}
@@ -151,6 +166,12 @@ def _wider(size: Any, clearance: Any) -> Any:
     if isinstance(size, int | float) and isinstance(clearance, int | float):
         return round(size + 2 * clearance, 9)
     return f"({size})+2*({clearance})" if clearance else size
+
+
+def _sum(size: Any, more: Any) -> Any:
+    if isinstance(size, int | float) and isinstance(more, int | float):
+        return round(size + more, 9)
+    return f"({size})+({more})" if more else size
 
 
 __all__ = ["CLEARANCE_MM", "CUT", "FEATURES", "STANDARD", "feature_of", "is_pin", "made_of", "pin_of"]

@@ -23,7 +23,7 @@ from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.resolve import Fit
 from articad.runs.run import Run, RunRequest, open_or_create
-from tests.assemblies import block, four_bar, frame, geared_pair
+from tests.assemblies import block, four_bar, frame, geared_pair, of_density
 from tests.export.test_losses import JOINTS, WRITERS, pair
 from tests.importers.test_round_trips import _joint
 from tests.obedience import assert_heals
@@ -74,7 +74,7 @@ def test_a_joint_that_rests_at_zero_is_told_in_a_plan() -> None:
 )
 def test_a_gap_that_prints(words: str, gap: float, process: Any) -> None:
     def printed(gap: float, process: Any) -> Findings:
-        return write_3mf(replace(geared_pair(), fits={"a": Fit(gap, 1.0)}), process=process).findings
+        return write_3mf(replace(of_density(geared_pair(), 1240), fits={"a": Fit(gap, 1.0)}), process=process).findings
 
     before = printed(0.15, "fdm")
     finding = of(before, "W_PRINT_CLEARANCE", words)
@@ -83,7 +83,7 @@ def test_a_gap_that_prints(words: str, gap: float, process: Any) -> None:
 
 def test_the_gap_that_the_message_states_is_wide_enough() -> None:
     def printed(gap: float) -> Findings:
-        return write_3mf(replace(geared_pair(), fits={"a": Fit(gap, 1.0)})).findings
+        return write_3mf(replace(of_density(geared_pair(), 1240), fits={"a": Fit(gap, 1.0)})).findings
 
     (finding,) = printed(0.15)
     needed = re.search(r"needs ([\d.]+) mm", finding.message)

@@ -18,7 +18,7 @@ from articad.geometry.part import Part
 from articad.geometry.shapes import box, cylinder, sphere
 from articad.kinematics import declare
 from articad.plan.resolve import Fit
-from tests.assemblies import all_joint_kinds, block, frame, geared_pair
+from tests.assemblies import all_joint_kinds, block, frame, geared_pair, of_density
 
 
 def test_no_part_overwrites_another_where_case_does_not_count_and_none_is_a_device() -> None:
@@ -86,11 +86,18 @@ def test_the_same_part_is_the_same_bytes() -> None:
 
 
 def test_a_gap_that_the_process_cannot_print_is_a_finding() -> None:
-    assembly = replace(geared_pair(), fits={"a": Fit(0.15, 0.4), "b": Fit(0.5, 1.0), "s": Fit(None, 1.0)})
+    assembly = replace(of_density(geared_pair(), 1240), fits={"a": Fit(0.15, 0.4), "b": Fit(0.5, 1.0), "s": Fit(None, 1.0)})
 
     assert [finding.where for finding in write_3mf(assembly).findings] == ["joints.a"]
     assert not write_3mf(assembly, process="sla").findings
     assert write_3mf(assembly).findings.codes == ("W_PRINT_CLEARANCE",)
+
+
+@pytest.mark.parametrize("metal", ["base", "wheel_a"])
+def test_the_gap_of_a_part_that_is_not_printed_is_no_finding(metal: str) -> None:
+    printed = replace(of_density(geared_pair(), 1240), fits={"a": Fit(0.15, 0.4)})
+    mixed = replace(printed, parts={**printed.parts, metal: geared_pair().parts[metal]})
+    assert (len(write_3mf(printed).findings), len(write_3mf(mixed).findings)) == (1, 0)
 
 
 def test_an_open_mesh_is_left_out_and_told() -> None:

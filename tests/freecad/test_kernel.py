@@ -161,6 +161,11 @@ def test_what_goes_wrong_is_told_by_its_code(script: str, code: str) -> None:
     assert codes(script, probe=False) == {code}
 
 
+def test_a_misspelled_dimension_is_told_with_the_nearest_one() -> None:
+    with pytest.raises(BuildError, match=r"no dimension 'widht'\. Did you mean 'width'\?"):
+        build("def build(part):\n    return part.box((0, 0, 0), (part.dimensions['widht'], 9, 9)), {}\n", probe=False)
+
+
 def test_an_endless_script_ends_at_its_limit() -> None:
     impatient = FreeCADKernel(timeout=-15.0)  # FreeCAD's own start is allowed 20 s more
     with pytest.raises(BuildError) as raised:

@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+import build123d
 import numpy as np
 import pytest
 
@@ -84,6 +85,44 @@ def test_a_shape_that_freecad_cannot_read_is_an_error_with_the_parts_name(spoilt
     findings = verify(freecad_file.packed(files), made, freecad_install.find())
     assert ("E_FREECAD", ("pendulum",)) in {(finding.code, finding.parts) for finding in findings}
     assert all(finding.parts in ((), ("pendulum",)) for finding in findings)
+
+
+def shape_file(shape: build123d.Shape, path: Path) -> bytes:
+    build123d.export_brep(shape, path)
+    return path.read_bytes()
+
+
+def turned_inside_out() -> build123d.Shape:
+    """A solid whose shell lacks a face: OCCT calls it invalid."""
+    shell = build123d.Shell(build123d.Box(3, 4, 5).faces()[:-1])
+    return build123d.Solid(shell)
+
+
+CORNER = build123d.Pos(10, 10, 0) * build123d.Box(10, 10, 10)
+TANGENT = CORNER + build123d.Box(10, 10, 10) + build123d.Pos(5, 5, -6) * build123d.Box(20, 20, 2)
+FAULTY: dict[str, tuple[build123d.Shape, str]] = {
+    "two solids that touch along an edge": (
+        build123d.Compound([build123d.Box(10, 10, 10).solid(), CORNER.solid()]),
+        "has 2 solids, not one; solid 1, of 1000 mm³ about (0, 0, 0), touches solid 2 at (5, 5, ",
+    ),
+    "a solid that touches itself": (
+        build123d.Compound([TANGENT.solid(), (build123d.Pos(50) * CORNER).solid()]),
+        "touches itself along an edge at (5, 5, 0)",
+    ),
+    "an open solid": (turned_inside_out(), "is not a valid solid; solid 1, of "),
+}
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+@pytest.mark.parametrize("kind", FAULTY)
+def test_the_solids_of_a_faulty_part_are_told(kind: str, tmp_path: Path) -> None:
+    shape, words = FAULTY[kind]
+    with zipfile.ZipFile(io.BytesIO(content("metronome"))) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    files["pendulum_body.Shape.brp"] = shape_file(shape, tmp_path / "it.brep")
+    findings = verify(freecad_file.packed(files), assembly("metronome"), freecad_install.find())
+    assert any(words in finding.message for finding in findings), str(findings)
 
 
 @pytest.mark.freecad

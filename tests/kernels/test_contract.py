@@ -201,6 +201,14 @@ def test_a_feature_of_a_standard_joint_without_effect_is_told_with_its_joint(bui
         assert not any("shaft" in one.where for one in found)
 
 
+@pytest.mark.parametrize("read", ["d['widht']", "d.widht", "part.dimensions['widht']"])
+def test_a_misspelled_dimension_is_told_with_the_nearest_one(build: Build, read: str) -> None:
+    with pytest.raises(BuildError) as raised:
+        build(f"return Box({read}, 9, 9), {{}}", dimensions={"width": 10.0, "depth": 3.0})
+    (finding,) = raised.value.findings
+    assert "has no dimension 'widht'. Did you mean 'width'? It has width, depth." in finding.message
+
+
 def test_a_dimension_that_is_only_named_like_a_feature_is_that_of_no_joint(build: Build) -> None:
     connectors = {"lid": frame()}
     (finding,) = build(

@@ -281,6 +281,7 @@ ADDED = (
     "like",
     "by",
     "head_mm",
+    "blind",
     "rest_pose",
 )
 MOVES = (

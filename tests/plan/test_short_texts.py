@@ -252,6 +252,65 @@ def test_a_hinge_by_a_pin_makes_the_pin_and_both_bores(swing: Path) -> None:
     assert [joint.name for joint in built.drivers] == ["turn", "turn_2", "turn_3"]
 
 
+UNKNOWN = {
+    "lenght 5": "Did you mean 'length'?",
+    "blnd": "Did you mean 'blind'?",
+    "blind; depth 3": "and no depth",
+    "effrt_n_mm 5": "Did you mean 'effort_n_mm'?",
+}
+
+
+@pytest.mark.parametrize("clause", UNKNOWN)
+def test_a_clause_that_is_unknown_is_told_once_and_at_each_joint_that_states_it(clause: str) -> None:
+    plan = copy.deepcopy(ROD)
+    plan["joints"]["turn"] += f"; {clause}"
+    plan["joints"]["turn_4"] = "like turn_2 post arm_2 bolt_4; at 70,0,20.4 along -z"
+    plan["joints"]["turn_3"] += "; lenght 7"
+    with pytest.raises(PlanError) as refused:
+        AssemblyPlan.from_json(plan)
+    key = clause.split(maxsplit=1)[0].rstrip(";")
+    assert [one.where for one in refused.value.findings] == [f"joints.turn.{key}", "joints.turn_3.lenght"]
+    assert UNKNOWN[clause] in refused.value.findings[0].hint
+    plan["joints"]["turn_2"] += f"; {clause}"
+    with pytest.raises(PlanError) as refused:
+        AssemblyPlan.from_json(plan)
+    assert [one.where.split(".")[1] for one in refused.value.findings] == ["turn", "turn_2", "turn_3"]
+
+
+@pytest.mark.parametrize("kind", ["pin_in_clevis", "ball_socket", "snap_ring"])
+def test_what_does_not_end_has_no_hole_that_does(kind: str) -> None:
+    with pytest.raises(PlanError) as refused:
+        AssemblyPlan.from_json(ROD | {"joints": {"turn": f"{kind} post arm; at 0,0,0; pin 8,9; blind"}})
+    assert "joints.turn.blind" in {one.where for one in refused.value.findings}
+
+
+@pytest.mark.parametrize(("pin", "depths"), [("bolt", {"post": 16, "arm": 16.15}), ("", {"arm": 16.15})])
+def test_blind_holes_end_where_the_pin_ends(pin: str, depths: Json) -> None:
+    """Without it, both bores of a bolt go through; the child's hole has its clearance at the bottom, too."""
+    plan = {**ROD, "freedoms": 1, "parts": {"post": "thick=t, wide=160", "arm": "thick=t, wide=30"}}
+    joint = f"hinge post arm {pin}; at 0,0,20.4 along -z; pin 8,16; angle 0,90"
+    held = {}
+    for clause in ("", "; blind"):
+        parts = {part["name"]: part["dimensions"] for part in expanded(plan | {"joints": {"turn": joint + clause}})["parts"]}
+        held[clause] = {name: size for name, sizes in parts.items() for key, size in sizes.items() if key.endswith("_depth")}
+    assert held == {"": {}, "; blind": depths}
+
+
+def test_a_bolt_in_a_blind_hole_fits_and_ends_in_it(tmp_path: Path) -> None:
+    """The bolt goes through the arm and 5.6 mm into the post, whose hole has a bottom of 4.4 mm."""
+    plan = {**ROD, "freedoms": 1, "parts": {"post": "thick=t, wide=160", "arm": "thick=t, wide=30"}}
+    plan["joints"] = {"turn": "hinge post arm bolt; at 0,0,20.4 along -z; pin 8,16; head 14,4; blind; angle 0,90"}
+    (tmp_path / "plan.json").write_text(json.dumps(plan))
+    (tmp_path / "parts.py").write_text(FLAT)
+    built = Assembly.from_plan(AssemblyPlan.load(tmp_path), tmp_path / "parts")
+    mass = built.parts["post"].mass
+    assert mass is not None
+    assert mass.mass == pytest.approx(700e-9 * (160 * 30 * 10 - math.pi * 16 * 5.6), rel=1e-4)
+    checks = built.check()
+    assert checks.ok, str(checks.findings)
+    assert built.certify(["turn"]).ok
+
+
 def test_what_is_like_another_has_its_fields_but_place_and_drive() -> None:
     plan = expanded(ROD)
     joints = {joint["name"]: joint for joint in plan["joints"]}

@@ -16,12 +16,14 @@ from pathlib import Path
 from typing import Any
 
 import FreeCAD as App
+import Part
 
 Json = dict[str, Any]
 
 _SHOWN = ("PartDesign::Body", "Part::Feature", "Part::Mirroring")  # what shows a part; a body may be made of mirror images
 _PATIENCE = 300.0  # seconds for all drawings
-_SAME = 1e-6  # mm, of dimensions
+_SAME = 1e-6  # mm, of dimensions, and of the distance of what touches
+_SOLIDS, _EDGES = 5, 1000  # of a faulty part that are looked at
 
 
 def main() -> None:
@@ -269,7 +271,28 @@ def _shape_now(part: Any) -> Json:
         return {"kind": "null"}
     solids = shape.Solids
     center = solids[0].CenterOfMass if len(solids) == 1 else App.Vector()
-    return {"kind": "shape", "valid": shape.isValid(), "solids": len(solids), "volume": shape.Volume, "center": list(center), "mass": mass}
+    row = {"kind": "shape", "valid": shape.isValid(), "solids": len(solids), "volume": shape.Volume, "center": list(center), "mass": mass}
+    return row if row["valid"] and len(solids) == 1 else row | {"faults": list(_faults(solids))}
+
+
+def _faults(solids: list[Any]) -> Iterator[str]:
+    """Yield which solids of a part are invalid, touch themselves along an edge, or touch another one."""
+    for number, solid in enumerate(solids[:_SOLIDS], start=1):
+        size = f"solid {number}, of {abs(solid.Volume):.6g} mm\u00b3 about ({_point(solid.CenterOfMass)})"
+        if not solid.isValid():
+            yield f"{size}, is invalid"
+        for edge in solid.Edges[:_EDGES]:
+            if len(solid.ancestorsOfType(edge, Part.Face)) > 2:
+                yield f"{size}, touches itself along an edge at ({_point(edge.CenterOfMass)})"
+                break
+        for other, second in enumerate(solids[number:_SOLIDS], start=number + 1):
+            distance, points, _ = solid.distToShape(second)
+            if distance < _SAME:
+                yield f"{size}, touches solid {other} at ({_point(points[0][0])})"
+
+
+def _point(vector: Any) -> str:
+    return ", ".join(f"{value:.4g}" for value in vector)
 
 
 def _mass(part: Any) -> float | None:

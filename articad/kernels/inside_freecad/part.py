@@ -7,6 +7,7 @@ Arguments: the numbers of open files: `job` to read, `report` and `document` to 
 from __future__ import annotations
 
 import copy
+import difflib
 import json
 import math
 import os
@@ -36,6 +37,15 @@ Value = float | str
 """A number, or arithmetic over the names of dimensions, such as "width / 2 - inset"."""
 
 
+class _Dimensions(dict[str, float]):
+    """Dimensions by name; a name that is none of them is told with the nearest one."""
+
+    def __missing__(self, name: str) -> float:
+        close = difflib.get_close_matches(str(name), self, n=1)
+        meant = f" Did you mean {close[0]!r}?" if close else ""
+        raise KeyError(f"The part has no dimension {name!r}.{meant} It has {', '.join(self) or 'none'}.")
+
+
 class NotAPartError(Exception):
     """What the script returned is not a part; the message says why."""
 
@@ -56,7 +66,7 @@ class Authoring:
 
     def __init__(self, brief: Json, document: Any) -> None:
         self.name, self.description, self.material = brief["name"], brief["description"], brief["material"]
-        self.dimensions = copy.deepcopy(brief["dimensions"])
+        self.dimensions = _Dimensions(brief["dimensions"])
         self.connectors = {
             name: SimpleNamespace(**{key: tuple(frame[key]) for key in ("o", "z", "x")}, label=frame["label"], joints=frame["joints"])
             for name, frame in copy.deepcopy(brief["connectors"]).items()
