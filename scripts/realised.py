@@ -102,6 +102,29 @@ def travel(scene: Scene, poses: Placed, movers: Sequence[str], still: Sequence[s
     return FREE_MM, None
 
 
+def pushing(
+    scene: Scene, poses: Placed, movers: Sequence[str], still: Sequence[str], others: Sequence[str], way: np.ndarray[Any, Any]
+) -> tuple[float, str | None, list[str]]:
+    """Return how far parts move along a direction until one of them enters a part that stands still, which, and the others that they push along.
+
+    A part that is entered is pushed from there on, with those that are fixed to it. Each push is known to STEP_MM.
+    """
+    begun, pushed = dict.fromkeys(movers, 0.0), list[str]()
+    for step in np.arange(STEP_MM, FREE_MM + STEP_MM / 2, STEP_MM).tolist():
+        todo = list(begun)
+        for part in todo:  # grows while parts are entered
+            ahead = [*still, *(name for name in others if name not in begun)]
+            while (stop := collides(scene, poses, [part], ahead, SE3.from_translation((step - begun[part]) * way))) is not None:
+                if stop in still:
+                    return step - STEP_MM, stop, pushed
+                along = [name for name in others if name not in begun and (name == stop or scene.relations.rigid.together(name, stop))]
+                begun |= dict.fromkeys(along, step - STEP_MM)
+                pushed += along
+                todo += along
+                ahead = [name for name in ahead if name not in begun]
+    return FREE_MM, None, pushed
+
+
 def tilt(scene: Scene, poses: Placed, movers: Sequence[str], still: Sequence[str], frame: SE3, axis: int) -> tuple[float, str | None]:
     """Return how far parts turn about an axis of a frame, at the best of some places along the frame's z, up to FREE_RAD, and what stops them."""
     heights = np.concatenate([(frame.inverse() @ poses[name]).apply(scene.meshes[name].vertices)[:, 2] for name in movers])
@@ -138,17 +161,21 @@ def tried(scene: Scene, assembly: Assembly, joint: Joint, row: JointCheck, loss:
         poses |= {name: there @ poses[name] for name in movers}
         others = []  # where they are at that pose is not asked
     frame = poses[joint.parent] @ joint.T_parent_connector
-    pushed: list[str] = []
     if loss.way.startswith("about "):
         far, stop = tilt(scene, poses, movers, parents, frame, "xyz".index(loss.way[-1]))
-        return {"way": loss.way, "free": far >= FREE_RAD - 1e-9, "rad": round(far, 4), "stop": stop, "pushed": pushed}
+        return {"way": loss.way, "free": far >= FREE_RAD - 1e-9, "rad": round(far, 4), "stop": stop, "pushed": []}
     way = np.asarray(frame.rotation)[:, "xyz".index(loss.way[-1])] * (1.0 if loss.way[0] == "+" else -1.0)
-    while True:
-        far, stop = travel(scene, poses, [*movers, *pushed], [*parents, *(name for name in others if name not in pushed)], way)
-        if stop is None or stop in parents:
-            alone = stop is None or (bool(pushed) and travel(scene, poses, movers, parents, way)[1] is None)
-            return {"way": loss.way, "free": stop is None, "mm": round(far, 3), "stop": stop, "pushed": pushed, "alone": alone}
-        pushed.append(stop)
+    far, stop, pushed = pushing(scene, poses, movers, parents, others, way)
+    alone, end = travel(scene, poses, movers, parents, way) if pushed and stop is not None else (far, stop)
+    return {
+        "way": loss.way,
+        "free": stop is None,
+        "mm": round(far, 3),
+        "stop": stop,
+        "pushed": pushed,
+        "alone": end is None,
+        "alone_mm": round(alone, 3),
+    }
 
 
 def falls(scene: Scene, assembly: Assembly, finding: Finding) -> dict[str, Any]:
@@ -211,13 +238,18 @@ def judged(folder: Path) -> dict[str, Any]:
 
 
 def _with_room(one: dict[str, Any], loss: FreeWay) -> dict[str, Any]:
-    return one if math.isinf(loss.room) else one | {"room": round(loss.room, 4)}
+    told = one if math.isinf(loss.room) else one | {"room": round(loss.room, 4)}
+    return told if loss.holding is None else told | {"held": round(loss.holding.travel, 4), "held_by": list(loss.holding.parts)}
 
 
 def agrees(one: Mapping[str, Any]) -> bool:
-    """Return whether the meshes say of a motion what the finding does: nothing stops it, or its partner does where its play is said to end."""
-    room = one.get("room")
-    if room is None or "mm" not in one or room >= FREE_MM:
+    """Return whether the meshes say of a motion what the finding does: nothing stops it, its partner does where its play is said to end, or others do."""
+    room = one.get("room", math.inf)
+    if "held" in one:
+        within = (STEP_MM + DEEP_MM) * len(one["held_by"])
+        partner = one["alone"] if room >= FREE_MM else abs(one["alone_mm"] - room) <= STEP_MM + DEEP_MM
+        return partner and abs(one["mm"] - one["held"]) <= within and (not one["free"] or one["held"] >= FREE_MM - within)
+    if "mm" not in one or room >= FREE_MM:
         return bool(one["free"])
     return not one["free"] and abs(one["mm"] - room) <= STEP_MM + DEEP_MM
 
@@ -242,14 +274,14 @@ Each finding is tried on the meshes by a method that shares nothing with the che
 
 - **a joint leaves a translation free**: the child is moved that way by {FREE_MM:g} mm in steps of {STEP_MM:g} mm, and each place is a Boolean of the solids (manifold3d).
   The finding is true if the child never enters the parent. Other parts that it enters are pushed along, and are named. If the finding states a play of less than
-  {FREE_MM:g} mm, it is true if the child enters the parent after that play, to one step.
+  {FREE_MM:g} mm, it is true if the child enters the parent after that play, to one step. If it says that others hold the child, it is true if these, pushed along,
+  end at the parent after that travel, to one step for each.
 - **a joint leaves a rotation free**: the child is turned by {FREE_RAD:g} rad about that axis at up to {PIVOTS[1]} places, the same way.
 - **a part is not carried**: it is moved down by {FREE_MM:g} mm; all others stay.
 - **the product tips over**: the centre of mass, from centres integrated over the triangles of the meshes, is outside the triangles that span its lowest points.
 
 - *confirmed*: the meshes stop none of the motions that the finding names, or each play where it is said to end.
-- *held by others*: the joint's own two parts do not stop them, but other parts between the two do, pushed against each other. The joint is not made by its parts;
-  the check should name those others instead.
+- *held by others*: the joint's own two parts do not stop them, but other parts between the two do, pushed against each other, and the finding does not say so.
 - *stopped*: the joint's own parts stop one of them elsewhere; the finding is in question.
 - *not tried*: the finding names no motion.
 """
@@ -313,7 +345,10 @@ def _motion(one: Mapping[str, Any]) -> str:
     far = f"{one['mm']:g} mm" if "mm" in one else f"{one['rad']:g} rad"
     pushed = f", with {' and '.join(f'`{name}`' for name in one['pushed'])}" if one["pushed"] else ""
     play = "" if "room" not in one else f", said to be {one['room']:.3g} {'mm' if 'mm' in one else 'rad'}"
-    return f"{one['way']} {far}{pushed}" + ("" if one["free"] else f" to `{one['stop']}`") + play
+    held = (
+        "" if "held" not in one else f", said to be held by {', '.join(f'`{name}`' for name in one['held_by'])} after {one['held']:.3g} mm"
+    )
+    return f"{one['way']} {far}{pushed}" + ("" if one["free"] else f" to `{one['stop']}`") + play + held
 
 
 def stored_results() -> dict[str, Any]:

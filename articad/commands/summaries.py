@@ -124,8 +124,7 @@ def print_joints(rows: list[Report], terminal: Terminal) -> None:
         told = [", ".join(made) or "no surfaces found", *([row["reason"]] if row["reason"] else [])]
         if row["free"]:
             told.append("free: " + ", ".join(_free(way) for way in row["free"]))
-        if row["held_by"]:
-            told.append(f"with {', '.join(row['held_by'])}")
+        told += [f"held by {', which is held by '.join(chain)}" for chain in row["held_by"]]
         if row["engaged_share"] is not None:
             told.append(f"{100 * row['engaged_share']:.0f} % of the guide engaged at the ends")
         terminal.say(f"  {row['joint']}: {row['type']}, {row['verdict']}; {'; '.join(told)}")
@@ -177,6 +176,7 @@ def _free(way: Report) -> str:
     """Return a freedom that a joint leaves, such as `+z (2 mm)`."""
     unit = "rad" if way["way"].startswith("about") else "mm"
     told = [*([] if way["room"] is None else [f"{way['room']:.3g} {unit}"]), *(["against its weight"] if way["by_weight"] else [])]
+    told += [f"held by {', which is held by '.join(way['held_by'])}"] if way["held_by"] else []
     return f"{way['way']} ({', '.join(told)})" if told else str(way["way"])
 
 

@@ -20,7 +20,7 @@ from articad.interference.travel import Outline, first_contacts
 from articad.kinematics.joints import Joint
 from articad.realisation.contacts import Pair
 
-__all__ = ["Stops"]
+__all__ = ["Stops", "travel_past"]
 
 _ASIDE: Final = 1e-3  # of the travel along the axis: what a way to the side costs
 _SAME: Final = 1e-6  # of a unit vector
@@ -49,10 +49,8 @@ class Stops:
         least = math.inf
         for (a, T_a), (b, T_b) in itertools.product(self._places[0].items(), self._places[1].items()):
             depth = self.scene.passable(a, b)
-            parent = self._corners(a, T_a, 0.0)
-            forwards, backwards = first_contacts(Outline.of(self._corners(b, T_b, depth), way), Outline.of(parent, way))
-            if forwards < least and (forwards > 0 or backwards > 0):
-                least = min(least, _met(self._corners(b, T_b, 0.0), parent, way, forwards, depth))
+            moving, inset, parent = self._corners(b, T_b, 0.0), self._corners(b, T_b, depth), self._corners(a, T_a, 0.0)
+            least = min(least, travel_past(moving, inset, parent, way, depth))
         return least
 
     def room(self, column: int, sign: float, found: Sequence[Pair], own: FloatArray, least: float) -> tuple[float, FloatArray]:
@@ -101,6 +99,22 @@ class Stops:
         mesh = self.scene.bodies[name].mesh
         vertices = mesh.vertices + inwards(mesh, depth) if depth else mesh.vertices
         return np.asarray(vertices @ T[:3, :3].T + T[:3, 3])[mesh.triangles]
+
+
+def travel_past(moving: FloatArray, inset: FloatArray, standing: FloatArray, way: FloatArray, depth: float) -> float:
+    """Return how far a surface moves along a unit vector `(3,)` before it meets another one [mm]; infinity if it never does, or overlaps where it is.
+
+    Args:
+        moving: Its triangles, `(T, 3, 3)` [mm].
+        inset: The same moved inwards by `depth`.
+        standing: Those of the other surface.
+        way: The direction.
+        depth: By which the two may overlap [mm].
+    """
+    forwards, backwards = first_contacts(Outline.of(inset, way), Outline.of(standing, way))
+    if math.isinf(forwards) or not (forwards > 0 or backwards > 0):
+        return math.inf
+    return _met(moving, standing, way, forwards, depth)
 
 
 def _met(moving: FloatArray, standing: FloatArray, way: FloatArray, inset: float, depth: float) -> float:

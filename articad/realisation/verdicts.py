@@ -23,6 +23,7 @@ from articad.interference.sampled_ranges import sampled_piece
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.realisation.contacts import FaceReach, Pair, pairs
+from articad.realisation.holders import Holders, Holding
 from articad.realisation.room import FAR_RAD, GROUND, Rise, Touch, far_mm, room
 from articad.realisation.sides import PartFace, Sides, sides
 from articad.realisation.stops import Stops
@@ -64,11 +65,13 @@ class FreeWay(NamedTuple):
         way: Such as "+z" or "about x", in the joint's frame on the parent.
         room: How far the child may move [mm or rad]: exact for straight ways, to first order for tilts; infinity if its partner does not stop it.
         by_weight: Whether only the weight of the child acts against it: the motion lifts its centre of mass.
+        holding: What ends a straight way at rest instead, if other parts are pushed along between the two; None if nothing does.
     """
 
     way: str
     room: float
     by_weight: bool
+    holding: Holding | None = None
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,8 @@ class JointCheck:
         pairs: The surfaces at rest: kind, parts, play [mm] and number of pairs of that kind.
         losses: Freedoms that stay, at the worst pose.
         at: That pose [rad, mm]; None at rest.
-        by: The other parts that hold it.
+        by: What else holds it. For straight ways chains of parts: one that is in the child's way, one that is in the way of that one, up to a part of
+            the parent's side; if there are none, each part that touches the child.
         share: Least share of the guide that is engaged at an end of the range; None for joints that do not slide.
         poses: Number of poses examined.
         reason: What is not assessed.
@@ -97,7 +101,7 @@ class JointCheck:
     pairs: tuple[tuple[str, tuple[str, str], float, int], ...] = ()
     losses: tuple[FreeWay, ...] = ()
     at: Mapping[str, float] | None = None
-    by: tuple[str, ...] = ()
+    by: tuple[tuple[str, ...], ...] = ()
     share: float | None = None
     poses: int = 0
     reason: str = ""
@@ -113,11 +117,17 @@ class JointCheck:
                 {"kind": kind, "parts": list(parts), "play_mm": rounded(play), "count": count} for kind, parts, play, count in self.pairs
             ],
             "free": [
-                {"way": loss.way, "room": None if math.isinf(loss.room) else rounded(loss.room), "by_weight": loss.by_weight}
+                {
+                    "way": loss.way,
+                    "room": None if math.isinf(loss.room) else rounded(loss.room),
+                    "by_weight": loss.by_weight,
+                    "held_by": [] if loss.holding is None else list(loss.holding.parts),
+                    "held_after": None if loss.holding is None else rounded(loss.holding.travel),
+                }
                 for loss in self.losses
             ],
             "at": None if self.at is None else {name: rounded(value) for name, value in self.at.items()},
-            "held_by": list(self.by),
+            "held_by": [list(chain) for chain in self.by],
             "engaged_share": rounded(self.share),
             "poses": self.poses,
             "reason": self.reason,
@@ -161,7 +171,9 @@ def check_joints(
         reached: Ranges of coordinates that follow others [rad, mm]; a joint of a linkage need not reach its own limits.
         joints: Names of the joints to judge; all by default.
     """
-    rows = [_Examined(scene, poses, joint).row(reached or {}) for joint in scene.relations.joints if joints is None or joint.name in joints]
+    holders = Holders(scene, poses)
+    judged = [joint for joint in scene.relations.joints if joints is None or joint.name in joints]
+    rows = [_Examined(scene, poses, joint).row(reached or {}, holders) for joint in judged]
     return Realisation(Findings(finding for row in rows for finding in _findings(row)), tuple(rows))
 
 
@@ -182,7 +194,7 @@ class _Examined:
             self.reach = FaceReach(TOUCH_MM + slack, TOUCH_MM + slack, 0.0)
         self.up = np.asarray((poses[joint.parent] @ joint.T_parent_connector).rotation)[2]  # the world's z in the joint's frame
 
-    def row(self, reached: Mapping[str, tuple[float, float]]) -> JointCheck:
+    def row(self, reached: Mapping[str, tuple[float, float]], holders: Holders) -> JointCheck:
         """Return the joint's row."""
         joint = self.joint
         row = JointCheck(joint.name, str(joint.type), (joint.parent, joint.child), "not assessed")
@@ -200,7 +212,7 @@ class _Examined:
             row = replace(row, reason="the thread is not assessed")
         losses = self._losses(rest, found)
         if losses:
-            return self._otherwise(replace(row, losses=losses), rest, found)
+            return self._otherwise(replace(row, losses=tuple(self._held(loss, holders) for loss in losses)), rest, found)
         return self._over(replace(row, verdict="made"), found, reached)
 
     def _losses(
@@ -226,6 +238,17 @@ class _Examined:
                         losses.append(FreeWay(name + _NAMES[column], end, by_weight=float(way @ self.up) >= steep))
         tilting = [int(column) for column in np.flatnonzero(~held) if column >= 3 and _tilts(free, int(column))]
         return (*losses, *(self._tilts(tilting, at, found, losses, stops, more) if tilting else ()))
+
+    def _held(self, loss: FreeWay, holders: Holders) -> FreeWay:
+        """Return a freedom with what other parts do against it: only a straight way, and not one that goes aslant past a stop of the partner."""
+        if loss.by_weight or loss.way.startswith("about"):
+            return loss
+        way = np.eye(3)["xyz".index(loss.way[1])] * (1.0 if loss.way[0] == "+" else -1.0)
+        if Stops(self.scene, self.joint).travel(way) < loss.room:
+            return loss
+        frame = self.poses[self.joint.parent] @ self.joint.T_parent_connector
+        holding = holders.along(self.joint, np.asarray(frame.rotation @ way))
+        return loss if holding is None or holding.travel >= loss.room else loss._replace(holding=holding)
 
     def _tilts(
         self, columns: Sequence[int], at: Sides, found: Sequence[Pair], losses: Sequence[FreeWay], stops: Stops, more: Sequence[Touch]
@@ -267,12 +290,15 @@ class _Examined:
 
     def _otherwise(self, row: JointCheck, rest: Sides, found: Sequence[Pair]) -> JointCheck:
         """Return the row of a joint that its own two sides do not make: perhaps with other parts, or with surfaces that are not known."""
-        more, by = self._around(rest)
-        if by:
+        more, touching = self._around(rest)
+        if touching:
             losses = self._losses(rest, found, more=more)
             if len(losses) < len(row.losses):
                 verdict: JointVerdict = "partly" if _unsupported(losses) else "held by others"
-                return replace(row, verdict=verdict, losses=losses, by=by)
+                held = {loss.way: loss.holding for loss in row.losses if loss.holding is not None}
+                left = tuple(loss._replace(holding=held.pop(loss.way, None)) for loss in losses)
+                chains = {holding.parts for holding in held.values()} or {(part,) for part in touching}
+                return replace(row, verdict=verdict, losses=left, by=tuple(sorted(chains)))
         if not _unsupported(row.losses):
             return replace(row, verdict="partly")
         if self._unknown_near(rest):
@@ -286,13 +312,13 @@ class _Examined:
             return bool({"pin in bore", "pin on flat"} & kinds)
         return bool(kinds)
 
-    def _around(self, rest: Sides) -> tuple[list[Touch], tuple[str, ...]]:
+    def _around(self, rest: Sides) -> tuple[list[Touch], set[str]]:
         """Return the contacts of all other bodies at rest, and the parts of those that touch the joint's child."""
         own = {one.part for side in rest for one in side}
         to_joint = (self.poses[self.joint.parent] @ self.joint.T_parent_connector).inverse()
         bodies: dict[str, list[PartFace]] = {}
         for name, mesh in self.scene.meshes.items():
-            if name not in own and name in self.poses:
+            if name not in own and name in self.poses and name not in self.scene.environment:
                 T = np.asarray((to_joint @ self.poses[name]).matrix)
                 leader = self.scene.relations.rigid.leader(name)
                 bodies.setdefault(leader, []).extend(PartFace(name, face.moved(T)) for face in faces_of(mesh))
@@ -302,7 +328,7 @@ class _Examined:
             for pair in pairs(Sides(first, second), self.reach) if j > 0 else ():
                 touches.append(Touch(i, j, pair.points, pair.normals, pair.gaps, pair.grazing))
                 by |= {pair.parts[1]} if i == 0 else set()
-        return touches, tuple(sorted(by))
+        return touches, by
 
     def _unknown_near(self, rest: Sides) -> bool:
         """Return whether a face of one side that is not recognised is close to any face of the other side."""
@@ -420,7 +446,7 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             code=code,
             where=where,
             parts=row.parts,
-            message=f"The {row.type} joint {row.joint!r} of {a} and {b} leaves the child {ways}{at}.",
+            message=f"The {row.type} joint {row.joint!r} of {a} and {b} leaves the child {ways}{at}.{_holders(row)}",
             hint="Lengthen the guide or the pin, or shorten the range."
             if row.at
             else "Add surfaces that stop these motions, or a part that does.",
@@ -450,6 +476,16 @@ def _left(losses: Sequence[FreeWay]) -> str:
         if math.isfinite(loss.room)
     ]
     return ", with ".join([*([f"free {', '.join(free)}"] if free else []), *([", ".join(plays)] if plays else [])])
+
+
+def _holders(row: JointCheck) -> str:
+    """Return what other parts do against ways that are free, such as " Other parts end this: along +z, lid is held by pin, ..."."""
+    told = [
+        f"along {loss.way} after {loss.holding.travel:.3g} mm, where {row.parts[1]} is held by {', which is held by '.join(loss.holding.parts)}"
+        for loss in row.losses
+        if loss.holding is not None
+    ]
+    return f" Other parts end this, if each moves straight: {'; '.join(told)}." if told else ""
 
 
 def _along(loss: FreeWay) -> str:

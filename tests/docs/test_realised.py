@@ -15,6 +15,7 @@ from build123d import Cylinder, Pos
 from articad.connectors import SE3
 from articad.interference.scene import Scene
 from tests.interference.mechanisms import joint
+from tests.realisation.test_holders import stack
 from tests.realisation.test_verdicts import mesh
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "realised.py"
@@ -81,6 +82,21 @@ def test_a_part_moves_until_it_enters_another(realised: ModuleType) -> None:
     assert far == pytest.approx(2.0, abs=realised.STEP_MM)
 
 
+@pytest.mark.parametrize("gaps", [(0.6, 0.4), (0.3, 1.2, 0.8), (2.0, 2.0, 2.0)])
+def test_parts_are_pushed_along_from_where_they_are_entered(realised: ModuleType, gaps: tuple[float, ...]) -> None:
+    """The travel is the sum of the gaps, less than a step for each; 6 mm are beyond what is tried."""
+    meshes = {name: mesh(shape) for name, shape in stack(gaps).items()}
+    scene, poses = Scene.of(meshes, [joint("j", "revolute", "a", "b")], deflection=0.01), dict.fromkeys(meshes, SE3.identity())
+    washers = [name for name in meshes if name.startswith("w")]
+    far, stop, pushed = realised.pushing(scene, poses, ["b"], ["a"], washers, np.array([0.0, 0.0, 1.0]))
+    assert pushed == washers
+    if sum(gaps) > realised.FREE_MM:
+        assert (far, stop) == (realised.FREE_MM, None)
+    else:
+        assert stop == "a"
+        assert sum(gaps) - realised.STEP_MM * len(gaps) <= far <= sum(gaps) + realised.DEEP_MM * len(gaps) + 0.05
+
+
 def test_an_eye_tilts_on_its_pin_by_its_play_only(realised: ModuleType) -> None:
     """A bore of 10 mm with a play of 0.1 mm lets a pin tilt by about 2 · 0.1 / 10 = 0.02 rad."""
     far, stop = realised.tilt(scene(), POSES, ["b"], ["a"], SE3.identity(), 0)
@@ -103,6 +119,11 @@ def test_an_eye_tilts_on_its_pin_by_its_play_only(realised: ModuleType) -> None:
         ([{"free": True, "mm": 5.0, "room": 9.0}], "confirmed"),
         ([{"free": False, "mm": 2.0, "room": 9.0}], "stopped"),
         ([{"free": True, "rad": 0.15, "room": 0.2}], "confirmed"),
+        ([{"free": False, "mm": 1.75, "alone": True, "alone_mm": 5.0, "held": 2.1, "held_by": ["c", "a"]}], "confirmed"),
+        ([{"free": False, "mm": 1.0, "alone": True, "alone_mm": 5.0, "held": 2.1, "held_by": ["c", "a"]}], "held by others"),
+        ([{"free": True, "mm": 5.0, "alone": True, "alone_mm": 5.0, "held": 2.1, "held_by": ["c", "a"]}], "held by others"),
+        ([{"free": False, "mm": 1.75, "alone": False, "alone_mm": 3.0, "held": 2.1, "room": 3.1, "held_by": ["c", "a"]}], "confirmed"),
+        ([{"free": False, "mm": 1.75, "alone": False, "alone_mm": 3.0, "held": 2.1, "room": 4.0, "held_by": ["c", "a"]}], "stopped"),
     ],
 )
 def test_a_finding_is_confirmed_if_the_meshes_stop_nothing_of_it(realised: ModuleType, tried: list[dict[str, Any]], verdict: str) -> None:

@@ -178,7 +178,7 @@ def test_a_joint_may_be_held_by_another_part() -> None:
     headed = Cylinder(3, 22) + Pos(0, 0, 11.4) * Cylinder(6, 2) + Pos(0, 0, -11.4) * Cylinder(6, 2)
     meshes = {"a": Pos(0, 0, -5.1) * plain, "b": Pos(0, 0, 5.1) * plain, "pin": headed}
     row, report = judged(meshes, "revolute", lower=(-1.0,), upper=(1.0,), others=(joint("spin", "revolute", "a", "pin"),))
-    assert (row.verdict, row.by) == ("held by others", ("pin",))
+    assert (row.verdict, row.by) == ("held by others", (("pin", "a"),))
     assert "joints.j" not in [finding.where for finding in report.findings]
     without = {name: one for name, one in meshes.items() if name != "pin"}
     assert judged(without, "revolute", lower=(-1.0,), upper=(1.0,))[0].verdict in ("partly", "not made")
