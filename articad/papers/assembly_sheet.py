@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 __all__ = ["assembly_sheet"]
 
 _PIXELS: Final = 700
-_WIDTHS: Final = (10.0, 48.0, 12.0, 34.0, 22.0)
-_HEAD: Final = ("item", "name", "qty", "material", "kg, one")
+_WIDTHS: Final = (9.0, 42.0, 9.0, 26.0, 34.0, 18.0)
+_HEAD: Final = ("item", "name", "qty", "material", "size, mm", "kg, one")
 
 
 def assembly_sheet(assembly: Assembly, items: Sequence[Item], drawn: DrawnView, fields: Mapping[str, str]) -> DrawingSheet:
@@ -56,7 +56,10 @@ def assembly_sheet(assembly: Assembly, items: Sequence[Item], drawn: DrawnView, 
     balloons(sheet, {number: origin + scale * spot for number, spot in seen.items()}, left - 12.0, right + 12.0)
     if hidden := [str(item.number) for item in items if item.number not in seen]:
         sheet.texts.append(Lettering(FILING + 6.0, EDGE + 6.0, f"Not visible in this view: item {', '.join(hidden)}"))
-    rows = [(str(i.number), i.name, str(i.quantity), i.material or "-", "-" if i.mass_kg is None else f"{i.mass_kg:.4g}") for i in items]
+    rows = [
+        (str(i.number), i.name, str(i.quantity), i.material or "-", i.size or "-", "-" if i.mass_kg is None else f"{i.mass_kg:.4g}")
+        for i in items
+    ]
     room = int((A3[1] - EDGE - 14.0 - (EDGE + BLOCK[1] + 6.0)) / ROW) - 2
     more = f" (items 1 to {room} of {len(rows)}; all are in the bill of materials)" if len(rows) > room else ""
     sheet.table(A3[0] - EDGE - 4.0, EDGE + BLOCK[1] + 6.0, f"Parts list{more}", _HEAD, rows[:room], _WIDTHS)

@@ -52,6 +52,11 @@ class Item:
         return len(self.parts)
 
     @property
+    def size(self) -> str:
+        """Its extents in mm to a tenth, such as "900 × 500 × 1800"; empty for a part without geometry."""
+        return " × ".join(f"{round(length, 1):.8g}" for length in self.size_mm or ())
+
+    @property
     def mass_kg(self) -> float | None:
         """Mass of one part."""
         return self.masses_kg[0]

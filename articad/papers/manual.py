@@ -139,7 +139,7 @@ class _Manual:
                 scene, Camera.fit("iso", scene.bounds, width=round(wide * self.dots), height=round(high * self.dots)), margin=1.06
             )
             sheet.pictures.append(SheetPicture(x + 2.5, y + 12.0, wide, high, printed(scene, camera)))
-        size = "" if item.size_mm is None else " × ".join(f"{length:.4g}" for length in item.size_mm) + " mm"
+        size = f"{item.size} mm" if item.size else ""
         room = _CELL[0] - 11.0
         height = 2.5 if text_width(item.name, 2.5) <= room else 2.0
         sheet.texts += [

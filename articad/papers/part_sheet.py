@@ -43,6 +43,7 @@ _S2, _S6 = np.sqrt(0.5), np.sqrt(1 / 6)
 ISO: Final = View("iso", (_S2, _S2, 0.0), (-_S6, _S6, 2 * _S6))
 _SEES: Final = {0: "left", 1: "front", 2: "top"}  # axis -> view in which a hole along it is a circle
 _MOST: Final = 16  # dimensions of a sheet
+_MEASURED: Final = 2  # digits of a size that the plan does not state
 _FIRST, _STEP = 9.0, 7.0  # from a view to its first dimension line, and between dimension lines
 _LETTERS: Final = "ABCDEFGHJKLMNPRSTUVWYZ"
 _HOLE_WIDTHS: Final = (17.0, 11.0, 15.0, 15.0, 14.0, 16.0, 48.0)
@@ -354,8 +355,23 @@ def _planned(facts: PartFacts) -> list[tuple[str, str, list[Any], float, str]]:
         )
         if named.pop(name, None) is not None:
             stated[place] = name
-    rows = list(named_sizes(named, overall, circles, [row[:4] for row in edges], _MOST))
+    rows = [_by_diameter(facts, row) for row in named_sizes(named, overall, circles, [row[:4] for row in edges], _MOST)]
     return [(*row[:4], row[4] or stated.pop(row[:2], "")) for row in rows]
+
+
+def _by_diameter(facts: PartFacts, row: tuple[str, str, list[Any], float, str]) -> tuple[str, str, list[Any], float, str]:
+    """Return a dimension of the radius of a whole circle as that of its diameter (ISO 129-1); an arc keeps its radius."""
+    view, kind, elements, value, name = row
+    if kind != "Radius" or not _is_whole(facts, np.array(elements[0])):
+        return row
+    return view, "Diameter", elements, 2 * value, name
+
+
+def _is_whole(facts: PartFacts, circle: FloatArray) -> bool:
+    """Return whether the arcs of a part with a circle's centre and radius go all around."""
+    every = facts.features.circles
+    same = (np.linalg.norm(every[:, :3] - circle[:3], axis=1) < 1e-4) & (np.abs(every[:, 6] - circle[6]) < 1e-4)
+    return bool(every[same, 7].sum() > 2 * np.pi - SAME)
 
 
 def _turned(facts: PartFacts, axis: int, size: float) -> tuple[Any, ...] | None:
@@ -364,9 +380,7 @@ def _turned(facts: PartFacts, axis: int, size: float) -> tuple[Any, ...] | None:
     for row in facts.features.circles:
         if abs(2 * row[6] - size) < 1e-4 and abs(row[3 + axis]) < SAME and abs(row[axis] - middle[axis]) < 1e-4:
             along = int(np.abs(row[3:6]).argmax())
-            same = np.linalg.norm(facts.features.circles[:, :3] - row[:3], axis=1) < 1e-4
-            same &= np.abs(facts.features.circles[:, 6] - row[6]) < 1e-4
-            if abs(abs(row[3 + along]) - 1.0) < SAME and facts.features.circles[same, 7].sum() > 2 * np.pi - SAME:
+            if abs(abs(row[3 + along]) - 1.0) < SAME and _is_whole(facts, row):
                 return along, round(float(row[6]), 4)
     return None
 
@@ -548,7 +562,7 @@ def _draw_dimensions(sheet: DrawingSheet, facts: PartFacts, views: Mapping[str, 
         vertical = kind == "DistanceY"
         axis = {"DistanceX": 0, "DistanceY": 2 if view == "front" else 1}[kind]
         round_one = len(elements) == 2 and _turned(facts, axis, value) is not None
-        words = f"{'Ø' if round_one else ''}{_number(value)}"
+        words = f"{'Ø' if round_one else ''}{_number(value if name else round(value, _MEASURED))}"
         a, b = sorted((start[1], end[1]) if vertical else (start[0], end[0]))
         short = b - a < text_width(words, SMALL) + 2.0 or b - a < 2.5 * ARROW
         wide = text_width(words, SMALL)
