@@ -14,7 +14,7 @@ from articad.export.mjcf import write_mjcf
 from articad.export.step import write_step
 from articad.plan.schema import AssemblyPlan
 from benchmarks.trial.check import PARTS, mistakes
-from benchmarks.trial.watch import written
+from benchmarks.trial.watch import is_made, written
 
 ROOT = Path(__file__).parents[1]
 PRODUCTS = ROOT / "benchmarks" / "products"
@@ -92,3 +92,22 @@ def test_characters_are_counted_that_are_new() -> None:
     assert written("", "abc\n") == 4
     assert written("abc\ndef\n", "abc\ndeXf\n") == 1
     assert written("abc\ndef\n", "def\n") == 0
+
+
+@pytest.mark.parametrize(
+    ("file", "made"),
+    [
+        ("plan.json", False),
+        ("parts/lid.py", False),
+        ("export/a.json", True),
+        ("run_2/a.json", True),
+        ("__pycache__/a.py", True),
+        ("first/parts/lid/part.json", True),
+    ],
+)
+def test_what_a_tool_makes_is_not_written_by_hand(file: str, made: bool, tmp_path: Path) -> None:
+    (tmp_path / "first").mkdir()
+    (tmp_path / "first" / "request.json").touch()
+    (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / file).touch()
+    assert is_made(tmp_path / file, tmp_path) == made

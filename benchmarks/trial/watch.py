@@ -2,8 +2,8 @@
 
     python benchmarks/trial/watch.py FOLDER [--ends .py,.json,.txt] &
 
-Each half second, every file that was written by hand (its name ends as stated, and it is in no folder that a tool makes) is compared with its
-last version: inserted and replaced characters count, also when they replace what was written before. A copy of a file that is there already
+Each half second, every file that was written by hand (its name ends as stated, and it is in no folder that a tool makes: one with a name
+such as `export`, or a run of articad, which holds `request.json`) is compared with its last version: inserted and replaced characters count, also when they replace what was written before. A copy of a file that is there already
 counts nothing. The sums go to FOLDER/written.json: `seconds` since the watch began until the last change, `characters` in all, `final`
 characters in the last versions.
 The watch ends when FOLDER/done is there.
@@ -18,6 +18,7 @@ import time
 from pathlib import Path
 from typing import Final
 
+RUN: Final = "request.json"
 MADE: Final = frozenset({"run", "out", "export", "meshes", "__pycache__"})
 PERIOD: Final = 0.5  # s
 
@@ -35,6 +36,13 @@ def written(before: str, after: str) -> int:
     return added
 
 
+def is_made(file: Path, folder: Path) -> bool:
+    """Return whether a file is in a folder that a tool made."""
+    inner = file.relative_to(folder)
+    named = any(MADE & {part, part.rstrip("0123456789_")} for part in inner.parts)
+    return named or any((folder / place / RUN).exists() for place in inner.parents if place != Path())
+
+
 def main() -> None:
     """Watch until the folder holds a file `done`."""
     reader = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -48,12 +56,7 @@ def main() -> None:
     while not ended:
         ended = (folder / "done").exists()
         for file in sorted(folder.rglob("*")):
-            if (
-                not file.name.endswith(ends)
-                or file.name == "written.json"
-                or any(MADE & {part, part.rstrip("0123456789_")} for part in file.relative_to(folder).parts)
-                or not file.is_file()
-            ):
+            if not file.name.endswith(ends) or file.name == "written.json" or is_made(file, folder) or not file.is_file():
                 continue
             text = file.read_text(errors="replace")
             if text != known.get(file):
