@@ -115,14 +115,14 @@ def marks(folder: Path) -> str:
     return mark.read_text() if mark.exists() else ""
 
 
-ELSEWHERE = {"bench run": "generate", "bench judge": "generate", "bench faults": "build, check and edit", "bench cheats": "bench score"}
+ELSEWHERE = {"bench run": "generate", "bench judge": "generate", "bench faults": "build, check and edit", "bench cheats": "bench score", "bench make": "build"}
 """Actions that run what other lines run, and take minutes or a model."""
 HARMLESS = """
 --root --budget --no-engines --density --sandbox --out --jobs --memory --kernel --set --force --api-base --docs --look --no-look --strict
 --no-inspection --max-calls --max-tokens --max-cost --max-minutes --rounds --repairs --variant --model --vision-model --judge-model
 --embeddings --keep --tasks --some --kind --at-once --judge --refine --recorded --size --sheet --kerf --turn --purchased --epsilon
 --joints --pairs --no-pairs --script --fuse --no-build --srdf --keep-frames --flat --image --part-image --review --ideas --pick --loops --collision
---actuators --process --case --repair --next --port --dir --formats --export --views --parts --explode --engine --scheduler --seconds --meshes
+--actuators --process --case --repair --next --port --dir --formats --export --views --parts --explode --engine --scheduler --seconds --meshes --seed
 """
 """Options that choose numbers, names, places or one of the ways that are tried without them; they start no code of their own."""
 

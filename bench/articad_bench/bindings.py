@@ -10,6 +10,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
+from articad.errors import ArticadError
 from articad.kinematics.joints import JointType
 from articad_bench.checks import AnyCheck, Joints, Lead, Made, Moves, Parts, moved_share
 from articad_bench.likeness_checks import Arranged, Handed, Matter, Row, arrangement, filled, handedness, moments_of
@@ -17,7 +18,7 @@ from articad_bench.subject import Subject
 from articad_bench.task import Task
 from articad_bench.whole_checks import Threads
 
-__all__ = ["HANDED", "bindings", "bound", "shows_hands"]
+__all__ = ["HANDED", "NotBoundError", "bindings", "bound", "bound_task", "shows_hands"]
 
 VOLUME: Final = 5.0  # times less or more of the matter
 GREATEST: Final = 2.5  # times less, for the joint that moves most
@@ -49,7 +50,7 @@ def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
         checks.append(Moves(joint=check.joint, volume=all_of_them, size=sizes, number=check.number))
         if max(volume) > GREATEST * min(volume):
             checks.append(Moves(joint=check.joint, volume=(_rounded(max(volume) / GREATEST), 1.0), size=sizes))
-    moving, unmade = sum(joint.type is not JointType.FIXED for joint in subject.assembly.joints), len(Made.wrong(subject))
+    moving, unmade = sum(joint.type is not JointType.FIXED for joint in subject.assembly.joints), len(subject.unmade)
     if unmade < moving:  # else the check could not fail
         checks.append(Made(except_for=unmade))
     share = filled(subject)
@@ -97,6 +98,39 @@ def bound(task: Task, subject: Subject) -> Task:
     """Return a task with its bindings in place of those that it has."""
     others = tuple(check for check in task.checks if not isinstance(check, BOUND))
     return task.model_copy(update={"checks": (*others, *bindings(task, subject))})
+
+
+class NotBoundError(ArticadError):
+    """A reference does not pass the checks that are derived from it."""
+
+
+def bound_task(task: Task, subject: Subject, after: Subject | None) -> Task:
+    """Return a task with its bindings in place of those that it has; its edit restates those that do not hold of the edited product.
+
+    Args:
+        task: The task.
+        subject: Its reference.
+        after: Its edited reference, if it has an edit.
+
+    Raises:
+        NotBoundError: If a reference does not pass; says which checks.
+    """
+    found = bound(task, subject)
+    _all_hold([check for check in found.checks if isinstance(check, BOUND)], subject)
+    if task.edit is None or after is None:
+        return found
+    others = tuple(check for check in task.edit.checks if not isinstance(check, BOUND))
+    kinds = {check.kind for check in found.checks if isinstance(check, BOUND) and not check.judge(after).ok}
+    edited = task.model_copy(update={"checks": task.edit_checks})
+    again = tuple(check for check in bindings(edited, after) if check.kind in kinds)
+    _all_hold(again, after)
+    return found.model_copy(update={"edit": task.edit.model_copy(update={"checks": (*others, *again)})})
+
+
+def _all_hold(checks: Sequence[AnyCheck], subject: Subject) -> None:
+    wrong = [each for each in (check.judge(subject) for check in checks) if not each.ok]
+    if wrong:
+        raise NotBoundError("; ".join(f"{each.kind} wants {each.wanted}, is {each.measured}" for each in wrong))
 
 
 def _rounded(value: float) -> float:

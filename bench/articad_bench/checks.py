@@ -37,12 +37,6 @@ from articad_bench.whole_checks import Extent, Threads
 
 AXIS_RAD: Final = math.radians(5)  # by which an axis may lean from the one asked for
 _ABOUT_LINE: Final = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
-_ASIDE: Final = {str(kind): {"x", "y"} for kind in JointType} | {
-    str(JointType.BALL): {"x", "y", "z"},
-    str(JointType.UNIVERSAL): {"x", "y", "z"},
-    str(JointType.PLANAR): {"z"},
-    str(JointType.SLIDER): {"x", "y"},
-}  # directions in which a body must not be free to leave its joint
 SPAN_SLACK: Final = 1e-6  # deg or mm: what becomes of a range that is converted to radians and back
 STROKE: Final = 9  # values of a driver at which what follows it is measured
 CLOSED_MM: Final = 1e-6
@@ -431,17 +425,8 @@ class Made(Check):
         return "surfaces of both bodies make every joint" + (f", up to {self.except_for}" if self.except_for else "")
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        wrong = self.wrong(subject)
+        wrong = subject.unmade
         return bool(_moving(subject)) and len(wrong) <= self.except_for, f"not: {', '.join(wrong)}" if wrong else "all are"
-
-    @staticmethod
-    def wrong(subject: Subject) -> list[str]:
-        """Return the joints that no surfaces make, or whose bodies can leave them sideways."""
-        return [
-            row.joint
-            for row in subject.assembly.check_joints([joint.name for joint in _moving(subject)]).rows
-            if row.verdict in {"not made", "not assessed"} or any(loss.way[1:] in _ASIDE[row.type] for loss in row.losses)
-        ]
 
 
 class Captive(Check):

@@ -27,9 +27,11 @@ if TYPE_CHECKING:
 @command(
     "bench",
     "Run the benchmark with a model; score the files of any tool, or have models judge them; list the tasks, or draw their pictures; "
-    "plant faults, and count those that no check finds; try cheats, none of which may pass.",
+    "make variants of tasks that no leaked answer fits; plant faults, and count those that no check finds; try cheats, none of which may pass.",
     argument(
-        "action", choices=["run", "score", "judge", "table", "list", "draw", "shapes", "objects", "faults", "cheats"], help="what to do"
+        "action",
+        choices=["run", "score", "judge", "table", "list", "draw", "make", "shapes", "objects", "faults", "cheats"],
+        help="what to do",
     ),
     argument(
         "what",
@@ -60,8 +62,13 @@ if TYPE_CHECKING:
     argument(
         "--sentences", action="store_true", help="list: which check holds each number of a task, and which sentence states each check"
     ),
+    argument(
+        "--seed", metavar="N", type=positive, default=1, help="make: which variant of each task; the same seed gives the same variants (1)"
+    ),
     argument("--kind", choices=["articulated", "static", "industrial", "hard"], default=None, help="only tasks of this kind"),
-    output_folder("--out", "bench", "where rows, runs and the tables of faults and cheats are kept; existing rows are not made again"),
+    output_folder(
+        "--out", "bench", "where rows, runs, variants and the tables of faults and cheats are kept; existing rows are not made again"
+    ),
     argument(
         "--variant",
         choices=["full", "late", "no-rollback", "no-memory", "single-loop"],
@@ -294,6 +301,37 @@ def _draw(options: argparse.Namespace, terminal: Terminal) -> Report:
     return {"schema": "articad.bench-drawings/1", "ok": True, "findings": [], "files": files}
 
 
+def _make(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.errors import ArticadError
+    from articad.kernels.choice import kernel_named
+    from articad_bench.variants import make_variant
+
+    made, left_out = [], {}
+    kernel, cache = kernel_named("build123d", sandbox=sandbox_level(options)), build_cache(options)
+    tasks = _tasks(options)
+    with terminal.progress("Variants", total=len(tasks)) as tell:
+        for folder, task in tasks:
+            try:
+                variant = make_variant(folder, task, options.seed, Path(options.out), cache=cache, kernel=kernel)
+            except ArticadError as error:
+                left_out[task.name] = str(error).splitlines()[0]
+                tell(task.name, "left out")
+                continue
+            made.append({"task": task.name, "folder": str(variant.folder), "changed": variant.changed})
+            tell(task.name, ", ".join(f"{name} {old:g} to {new:g}" for name, (old, new) in variant.changed.items()))
+    for reason in left_out.values():
+        terminal.say(reason)
+    terminal.say(f"{len(made)} variants of {len(tasks)} tasks with seed {options.seed}.")
+    return {
+        "schema": "articad.bench-variants/1",
+        "ok": bool(made),
+        "findings": [],
+        "seed": options.seed,
+        "made": made,
+        "left_out": left_out,
+    }
+
+
 def _faults(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.errors import ReadError, did_you_mean
     from articad.kernels.choice import kernel_named
@@ -360,6 +398,7 @@ _ACTIONS: Final[Mapping[str, Callable[[argparse.Namespace, Terminal], Report]]] 
     "table": _table,
     "list": _list,
     "draw": _draw,
+    "make": _make,
     "shapes": _on_data,
     "objects": _on_data,
     "faults": _faults,

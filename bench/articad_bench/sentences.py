@@ -18,7 +18,7 @@ from articad.kinematics.joints import JointType
 from articad_bench.checks import AnyCheck, JointWanted
 from articad_bench.task import Task
 
-__all__ = ["CheckRow", "Number", "NumberRow", "Sentences", "numbers_of", "sentences"]
+__all__ = ["CheckRow", "Number", "NumberRow", "Sentences", "Text", "holds", "numbers_of", "sentences", "texts_of"]
 
 Text = Literal["prompt", "drawing", "edit"]
 Unit = Literal["mm", "deg", "kg", "ml", "%", "turn", "count"]
@@ -168,11 +168,11 @@ def sentences(task: Task) -> Sentences:
     Args:
         task: The task.
     """
-    texts, stated = _texts(task), tuple(numbers_of(task))
+    texts, stated = texts_of(task), tuple(numbers_of(task))
     rows, used = [], set()
     for number in stated:
         checks = task.edit_checks if number.text == "edit" else task.checks
-        holding = tuple(check.wanted for check in checks if _holds(check, number, stated))
+        holding = tuple(check.wanted for check in checks if holds(check, number, stated))
         marks = [] if holding else [mark for mark in task.unheld if _covers(mark, texts[number.text], number.place)]
         used.update(marks)
         rows.append(NumberRow(number, holding, task.unheld[marks[0]] if marks else None))
@@ -191,14 +191,15 @@ def _followed(number: Number, held: Sequence[NumberRow]) -> str | None:
     )
 
 
-def _texts(task: Task) -> dict[Text, str]:
+def texts_of(task: Task) -> dict[Text, str]:
+    """Return the texts of a task that state numbers."""
     notes = "" if task.drawing is None else " ".join(task.drawing.notes)
     return {"prompt": task.prompt, "drawing": notes, "edit": "" if task.edit is None else task.edit.prompt}
 
 
 def numbers_of(task: Task) -> Iterator[Number]:
     """Yield the numbers that a task's texts state, in their order."""
-    for name, text in _texts(task).items():
+    for name, text in texts_of(task).items():
         found = list(_NUMBER.finditer(text))
         for index, match in enumerate(found):
             if (match["word"] or "").lower() == "one" and not _ONE_OF.match(text, match.end()):
@@ -237,7 +238,14 @@ def _covers(mark: str, text: str, place: tuple[int, int]) -> bool:
 # ---------------------------------------------------------------------- what checks hold
 
 
-def _holds(check: AnyCheck, number: Number, others: Sequence[Number]) -> bool:
+def holds(check: AnyCheck, number: Number, others: Sequence[Number]) -> bool:
+    """Return whether a check holds a number of a task.
+
+    Args:
+        check: The check.
+        number: The number.
+        others: All numbers of the task: a ratio is of two of them.
+    """
     if any(_within(number, value) for value in _values(check)):
         return True
     if check.kind in _LOOSE and number.unit == "mm":  # play and walls are told as one number, and held to a range about it
@@ -335,7 +343,7 @@ _MEASURES: Final[dict[str, Callable[[Any], list[Value]]]] = {
 
 def _stated(task: Task, check: AnyCheck, stated: Sequence[Number]) -> str | None:
     """Return where a check comes from."""
-    told = [number for number in stated if _holds(check, number, stated)]
+    told = [number for number in stated if holds(check, number, stated)]
     if told and check.kind not in FOLLOWS:
         return f"{told[0].text}: {told[0].sentence}"
     return _drawn(task, check) or FOLLOWS.get(check.kind) or _worded(check, stated)

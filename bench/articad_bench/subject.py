@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -22,6 +23,12 @@ from articad.kinematics.motion import FeasibleRange
 from articad_bench.solids import boxes_by_faces
 
 _SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR})
+_ASIDE: Final = {str(kind): {"x", "y"} for kind in JointType} | {
+    str(JointType.BALL): {"x", "y", "z"},
+    str(JointType.UNIVERSAL): {"x", "y", "z"},
+    str(JointType.PLANAR): {"z"},
+    str(JointType.SLIDER): {"x", "y"},
+}  # directions in which a body must not be free to leave its joint
 
 
 @dataclass(frozen=True)
@@ -104,6 +111,16 @@ class Subject:
     def rigid(self) -> Mapping[str, str]:
         """For each part the name of one that it is fixed to; the same for all that are fixed together."""
         return {name: self.scene.relations.rigid.leader(name) for name in self.assembly.mechanism.parts}
+
+    @cached_property
+    def unmade(self) -> tuple[str, ...]:
+        """Names of the joints that no surfaces make, or whose bodies can leave them sideways."""
+        moving = [joint.name for joint in self.assembly.joints if joint.type is not JointType.FIXED]
+        return tuple(
+            row.joint
+            for row in self.assembly.check_joints(moving).rows
+            if row.verdict in {"not made", "not assessed"} or any(loss.way[1:] in _ASIDE[row.type] for loss in row.losses)
+        )
 
     def density(self, part: str) -> float:
         """Return a part's mass by its volume [kg/mm³]; that of water where no mass is known."""

@@ -204,9 +204,22 @@ def write_task(task: Task, folder: Path, *, beside: Path) -> tuple[Path, Task]:
     """
     for image in task.images:
         scratch.write(folder / image, read_image(beside, image))
-    text = task.model_dump_json(by_alias=True, exclude_defaults=True, indent=1)
-    scratch.write(folder / "task.json", f"{text}\n".encode())
+    scratch.write(folder / "task.json", as_stored(task))
     return folder, task
+
+
+def as_stored(task: Task) -> bytes:
+    """Return the text of a task's `task.json`: without values that are the default, but each check with its kind."""
+    row = {"schema": task.form} | task.model_dump(mode="json", by_alias=True, exclude_defaults=True)
+    row["checks"] = checks_as_stored(task.checks)
+    if task.edit is not None:
+        row["edit"]["checks"] = checks_as_stored(task.edit.checks)
+    return f"{json.dumps(row, indent=1, ensure_ascii=False)}\n".encode()
+
+
+def checks_as_stored(checks: Sequence[AnyCheck]) -> list[dict[str, Any]]:
+    """Return checks as a task stores them."""
+    return [{"kind": check.kind} | check.model_dump(mode="json", exclude_defaults=True) for check in checks]
 
 
 def tasks_in(folder: str | Path = TASKS, *, names: Sequence[str] = (), kind: Kind | None = None) -> list[tuple[Path, Task]]:
