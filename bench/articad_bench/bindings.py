@@ -105,7 +105,7 @@ class NotBoundError(ArticadError):
 
 
 def bound_task(task: Task, subject: Subject, after: Subject | None) -> Task:
-    """Return a task with its bindings in place of those that it has; its edit restates those that do not hold of the edited product.
+    """Return a task with its bindings in place of those that it has; its edit restates those that do not hold of the edited product, or of its mirror image as well.
 
     Args:
         task: The task.
@@ -121,6 +121,7 @@ def bound_task(task: Task, subject: Subject, after: Subject | None) -> Task:
         return found
     others = tuple(check for check in task.edit.checks if not isinstance(check, BOUND))
     kinds = {check.kind for check in found.checks if isinstance(check, BOUND) and not check.judge(after).ok}
+    kinds |= {check.kind for check in found.checks if isinstance(check, Handed) and not check.refuses_mirror_image(after)}
     edited = task.model_copy(update={"checks": task.edit_checks})
     again = tuple(check for check in bindings(edited, after) if check.kind in kinds)
     _all_hold(again, after)

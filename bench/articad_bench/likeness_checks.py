@@ -135,12 +135,22 @@ class Handed(Check):
         return "what is shown, and not its mirror image"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        meshes = placed(subject)
+        straight, mirrored = self._differences(subject)
+        return straight < mirrored + self.margin, f"differs by {straight:.2g}, its mirror image by {mirrored:.2g}"
+
+    def refuses_mirror_image(self, subject: Subject) -> bool:
+        """Return whether the mirror image of a product does not pass."""
+        straight, mirrored = self._differences(subject)
+        return not mirrored < straight + self.margin
+
+    def _differences(self, subject: Subject) -> tuple[float, float]:
+        """Return by how much the moments of a product, and of its mirror image, differ from those that are wanted."""
+        if not subject.shaped:
+            return float("inf"), float("inf")
         wanted = np.array(self.matter)
-        straight = [float(np.linalg.norm(moments(_turned(subject, turn)) - wanted)) for turn in TURNS]
-        mirrored = [float(np.linalg.norm(moments(_turned(subject, turn @ MIRROR)) - wanted)) for turn in TURNS]
-        ok = bool(meshes) and min(straight) < min(mirrored) + self.margin
-        return ok, f"differs by {min(straight):.2g}, its mirror image by {min(mirrored):.2g}"
+        ways = (TURNS, [turn @ MIRROR for turn in TURNS])
+        straight, mirrored = (min(float(np.linalg.norm(moments(_turned(subject, turn)) - wanted)) for turn in turns) for turns in ways)
+        return straight, mirrored
 
 
 def handedness(subject: Subject) -> float:
