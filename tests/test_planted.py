@@ -115,7 +115,13 @@ def marks(folder: Path) -> str:
     return mark.read_text() if mark.exists() else ""
 
 
-ELSEWHERE = {"bench run": "generate", "bench judge": "generate", "bench faults": "build, check and edit", "bench cheats": "bench score", "bench make": "build"}
+ELSEWHERE = {
+    "bench run": "generate",
+    "bench judge": "generate",
+    "bench faults": "build, check and edit",
+    "bench cheats": "bench score",
+    "bench make": "build",
+}
 """Actions that run what other lines run, and take minutes or a model."""
 HARMLESS = """
 --root --budget --no-engines --density --sandbox --out --jobs --memory --kernel --set --force --api-base --docs --look --no-look --strict
