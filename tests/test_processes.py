@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -424,3 +425,24 @@ def test_no_library_starts_python_in_the_working_folder(statement: str, tmp_path
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
     subprocess.run([sys.executable, "-P", "-c", statement], cwd=folder, env=environment, check=True, timeout=200)
     assert not mark.exists(), mark.read_text()
+
+
+@pytest.mark.parametrize("there", [True, False])
+@pytest.mark.parametrize("left", [True, False])
+@pytest.mark.parametrize("end", ["replaced", "given up", "cancelled"])
+def test_what_was_set_aside_comes_back_unless_it_was_replaced(end: str, left: bool, there: bool, tmp_path: Path) -> None:
+    target = tmp_path / "run"
+    if there:
+        target.mkdir()
+        (target / "old").touch()
+    with suppress(KeyboardInterrupt), scratch.set_aside(target) as replace:
+        assert not target.exists()
+        if left:
+            target.mkdir()
+            (target / "new").touch()
+        if end == "replaced":
+            replace()
+        if end == "cancelled":
+            raise KeyboardInterrupt
+    expected = left and "new" if end == "replaced" else there and "old"
+    assert [str(path.relative_to(tmp_path)) for path in sorted(tmp_path.rglob("*"))] == (["run", f"run/{expected}"] if expected else [])

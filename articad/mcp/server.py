@@ -299,12 +299,19 @@ class Tools:
             if name not in known:
                 raise ToolError(f"There is no parameter {name!r}.{did_you_mean(name, known)} There are {', '.join(known) or 'none'}.")
         plan = amended(plan, {f"parameters.{name}": value for name, value in values.items()})
-        before = self._shapes(design)
-        self.bench.write_plan(design, plan)
-        report = await self._built(context, folder, kernel)
-        if "error" in report:  # nothing was built: the design is unchanged
-            write_atomically(folder / "plan.json", kept)
-            return condensed(report, detail=False)
+        before, built = self._shapes(design), False
+        self._require_run(folder)
+        with scratch.set_aside(folder / "run") as replace:
+            self.bench.write_plan(design, plan)
+            try:
+                report = await self._built(context, folder, kernel)
+                built = "error" not in report
+            finally:  # nothing was built, or the call was cancelled: the design is unchanged
+                if not built:
+                    write_atomically(folder / "plan.json", kept)
+            if not built:
+                return condensed(report, detail=False)
+            replace()
         after = self._shapes(design)
         changed = sorted(name for name in after if after[name] != before.get(name))
         report |= {"changed": changed, "same": sorted(set(after) - set(changed)), "removed": sorted(set(before) - set(after))}
@@ -350,13 +357,8 @@ class Tools:
         return self._plans.get(design) == self.bench.read(f"{design}/plan.json")
 
     async def _built(self, context: Context, folder: Path, kernel: str, *, complete: bool = False) -> Json:
-        out = folder / "run"
-        if out.is_symlink():
-            raise ReadError.at(out, f"{out.name} of {folder.name} is a link.", "Remove the link; a build makes the folder.")
+        out = self._require_run(folder)
         if out.exists():
-            others = [entry for entry in out.iterdir() if not entry.name.startswith(scratch.BESIDE)] if out.is_dir() else [out]
-            if others and not is_file(out / REQUEST_FILE, root=self.bench.root):
-                raise ReadError.at(out, f"{out.name} of {folder.name} is not a run.", "Move the folder away; a build makes it.")
             shutil.rmtree(out)  # the run is derived from the design
         words = [f"--out={out}", f"--kernel={kernel}", "--no-pictures", *(["--complete"] if complete else [])]
         seconds = _COMPLETE_S if complete else _BUILD_S
@@ -370,6 +372,21 @@ class Tools:
             "deepest_overlap_mm": max(depths, default=0.0),
             "files": {name: self._shown(entry["main"]) for name, entry in report.get("exports", {}).items()},
         }
+
+    def _require_run(self, folder: Path) -> Path:
+        """Return the place of a design's run.
+
+        Raises:
+            ReadError: If a link or anything but a run is there.
+        """
+        out = folder / "run"
+        if out.is_symlink():
+            raise ReadError.at(out, f"{out.name} of {folder.name} is a link.", "Remove the link; a build makes the folder.")
+        if out.exists():
+            others = [entry for entry in out.iterdir() if not entry.name.startswith(scratch.BESIDE)] if out.is_dir() else [out]
+            if others and not is_file(out / REQUEST_FILE, root=self.bench.root):
+                raise ReadError.at(out, f"{out.name} of {folder.name} is not a run.", "Move the folder away; a build makes it.")
+        return out
 
     def _shapes(self, design: str) -> dict[str, str]:
         """Return the digest of each built part's mesh and its source."""

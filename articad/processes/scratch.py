@@ -99,6 +99,36 @@ def folder_beside(target: Path) -> Iterator[Path]:
         _unlock(lock)
 
 
+@contextlib.contextmanager
+def set_aside(target: Path) -> Iterator[Callable[[], None]]:
+    """Take a folder out of its place, and put it back when the block ends, instead of what is there then, unless the given function was called.
+
+    Raises:
+        OSError: If it cannot be moved.
+    """
+    _sweep_beside(target.parent)
+    temporary, lock = _locked(lambda: Path(tempfile.mkdtemp(prefix=BESIDE, dir=target.parent)))
+    kept, replaced = temporary / "kept", False
+
+    def replace() -> None:
+        nonlocal replaced
+        replaced = True
+
+    try:
+        if target.exists():
+            target.rename(kept)
+        try:
+            yield replace
+        finally:
+            if not replaced and target.exists():
+                target.rename(temporary / "unfinished")
+            if not replaced and kept.exists():
+                kept.rename(target)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+        _unlock(lock)
+
+
 def require_own(folder: Path) -> None:
     """Check that a folder that no user named is no link, and lies in none: a link would lead what is written to somebody else's place.
 

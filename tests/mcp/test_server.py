@@ -188,9 +188,19 @@ def test_an_edit_says_what_changed_and_what_is_provably_the_same(tmp_path: Path)
         answer = await agent.call("edit_parameters", design="chest", values={"lid_board": 15})
         assert (answer["changed"], answer["same"]) == (["lid"], ["box"])
         assert "lid_bord" in await agent.refused("edit_parameters", design="chest", values={"lid_bord": 15})
+        before = contents(tmp_path / "chest")
+        assert "run/request.json" in before
         failed = await agent.call("edit_parameters", design="chest", values={"width": -5})
         assert not failed["ok"]
-        assert json.loads((tmp_path / "chest" / "plan.json").read_text())["parameters"][0]["value"] == 300
+        assert contents(tmp_path / "chest") == before
+
+        for patience in (0.3, 3.0):  # of about ten seconds
+            with anyio.move_on_after(patience) as scope:
+                await agent.call("edit_parameters", design="chest", values={"width": 310})
+            assert scope.cancelled_caught
+            with anyio.fail_after(60):
+                while contents(tmp_path / "chest") != before:  # noqa: ASYNC110 - the end of the call is no event of this loop
+                    await anyio.sleep(0.1)
 
     over_stdio(tmp_path, work)
 
@@ -345,6 +355,11 @@ async def design_of(agent: Agent, name: str, plan: Json) -> None:
     await agent.call("build_part", design=name, part="lid", script=LID)
     await agent.call("build_part", design=name, part="box", script=BOX)
     assert (await agent.call("build", design=name))["files"]
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Return all files below a folder."""
+    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
 
 
 def processes_in(root: Path) -> list[int]:
