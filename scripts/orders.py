@@ -40,6 +40,7 @@ PAGE: Final = STORED.with_suffix(".md")
 SCHEMA: Final = "articad.orders/1"
 PLACES: Final = 60  # on each move of a path
 JUDGES: Final = ("disassembly", "interference")  # packages that decide an order
+WORDS: Final = "disassembly/steps.py"  # the form of an order and its words, which decide nothing
 
 SETS: Final = {"": "Examples", "run": "Recorded runs", "task": "References of hard tasks"}
 
@@ -77,7 +78,8 @@ def programs() -> str:
     found = hashlib.sha256()
     folder = Path(str(articad.__file__)).parent
     for file in sorted(file for package in JUDGES for file in (folder / package).glob("*.py")):
-        found.update(f"{file.relative_to(folder)}\n".encode() + file.read_bytes())
+        if file != folder / WORDS:
+            found.update(f"{file.relative_to(folder)}\n".encode() + file.read_bytes())
     return found.hexdigest()[:12]
 
 
@@ -148,7 +150,10 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
 
 
 LOOKED: Final[Mapping[str, str]] = {
+    "run:phone_holder": "The holder's ball is in a closed socket of the arm that reaches over more than half of it; a workshop snaps it in, or makes the socket of two halves.",
     "run:pliers": "The lever is one piece of two cheeks and the pins between them, which pass through closed eyes of the lower jaw and of the strut.",
+    "run:stool": "Each leg frame is one piece with the rods between its legs, and the rods lie in closed eyes of the seat's lugs and of the braces; the rod of the outer frame "
+    "passes through closed bores of the inner legs.",
     "metronome": "The case is one hollow piece around its nut and its barrel.",
     "scissor_lift": "Each frame is one piece of two arms and their cross rods, and the rods lie in closed eyes of the other frames, inside its own two arms.",
     "slider_crank": "The rod's eye is one closed piece about the crank pin, and the piston stays in its cylinder at every angle of the crank, so that the eye "
@@ -162,9 +167,19 @@ LOOKED: Final[Mapping[str, str]] = {
     "task:sarrus_lifter": "Each leaf is between two lugs whose pins reach into its eye from both sides; lugs, pins and plate are one piece, below as above.",
     "task:scotch_yoke_pump": "The crank pin is one piece with the disc below the block and with a head above it that is wider than the block's bore; the yoke's rods end "
     "in posts on both sides, which are one piece with the base.",
+    "task:tongs_lazy": "The slide leaves the lower end of its rod only below the height at which the tongs, drawn out, stop: there the pin of `falling` meets the eye of `rising`. "
+    "`falling` is between `rising` and the slide, whose pins are in its eyes from both sides.",
     "task:steering_rack": "The rod on which the rack bar slides passes through a closed bore and ends in posts on both sides, which are one piece with the chassis.",
 }
 """What was seen on the picture of each product that no order puts together."""
+
+REFUTED: Final[Mapping[str, str]] = {
+    "task:oldham_offset": "A person puts it together: both hubs slide along their bearings by 24.75 mm, onto the plates of the frame, and the floater goes in between from the side; then "
+    "the hubs are moved together. The search lets no part wait beside its place.",
+    "task:schmidt_coupling": "A person puts it together: the outer discs slide along their bearings by 12 mm, onto the plates of the frame; discs and links, of 6 mm, go in between from "
+    "the side; then they are moved together. The search lets no part wait beside its place.",
+}
+"""How a person puts a product together for which the search finds no order."""
 
 ABOUT: Final = """\
 # Orders of assembly
@@ -178,7 +193,7 @@ explains what is proven.
 - **proven**: every step's path is proven. *n by force*: so many pairs of parts are joined as the plan states (snap, press, circlip, bought as one).
 - **sampled**: every path was examined again with manifold3d: Booleans of the solids at 60 places of each move, for every moving and every placed part
   whose boxes meet there. The number is by how much the deepest overlap is deeper than the joint of the two parts allows: negative means clear of that.
-- What no order puts together is named below, with what was seen on its picture.
+- What no order puts together is named below, with what was seen on its picture: what blocks it, or how a person puts it together all the same.
 """
 
 
@@ -190,8 +205,8 @@ def page(stored: Mapping[str, Any]) -> str:
     slowest = max(rows, key=lambda key: rows[key]["seconds"])
     places, pairs = (sum(row["sampled"][key] for row in rows.values()) for key in ("places", "pairs"))
     told = (
-        f"{len(rows)} of {len(stored['planned'])} products were examined, {newest} of them by the newest programs: {len(solved)} have an order, {len(rows) - len(solved)} have parts that "
-        f"block each other. The search of `{slowest}` took longest: {rows[slowest]['seconds']:g} s for {rows[slowest]['parts']} parts. "
+        f"{len(rows)} of {len(stored['planned'])} products were examined, {newest} of them by the newest programs: {len(solved)} have an order, for {len(rows) - len(solved)} none was found"
+        f"{_confirmed(rows)}. The search of `{slowest}` took longest: {rows[slowest]['seconds']:g} s for {rows[slowest]['parts']} parts. "
         f"{places} places of paths were sampled, with {pairs} Booleans."
     )
     lines = [ABOUT, told]
@@ -212,8 +227,15 @@ def page(stored: Mapping[str, Any]) -> str:
     for key, row in sorted(rows.items()):
         for blocked in row["blocked"]:
             ways = "; ".join(f"`{part}` {travel:.3g} mm to `{by}`" for part, (travel, by) in blocked["best"].items())
-            lines += [f"- **`{key.rpartition(':')[2]}`**: {LOOKED.get(key, 'Not looked at yet.')} Farthest ways: {ways}."]
+            seen = f"*Not confirmed.* {REFUTED[key]}" if key in REFUTED else LOOKED.get(key, "Not looked at yet.")
+            lines += [f"- **`{key.rpartition(':')[2]}`**: {seen} Farthest ways: {ways}."]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def _confirmed(rows: Mapping[str, Any]) -> str:
+    """Return of how many blocked products the picture confirms it."""
+    blocked = {key for key, row in rows.items() if row["blocked"]}
+    return f" (blockers confirmed on the picture: {len(blocked & set(LOOKED))}, refuted: {len(blocked & set(REFUTED))})"
 
 
 def _solved(row: Mapping[str, Any]) -> bool:

@@ -30,7 +30,10 @@ _AXIS: Final = 1e-6  # of a unit vector: it points along an axis
 
 Vector3 = tuple[float, float, float]
 
-NOT_CHECKED = "Parts are rigid; room for hands and tools, the order of adhesives, and whether a step needs a fixture are not checked."
+NOT_CHECKED = (
+    "Parts are rigid; room for hands and tools, the order of adhesives, and whether a step needs a fixture are not checked. Each part gets to its place "
+    "at once: that one waits beside it until others are in is not tried."
+)
 
 
 class _Form(BaseModel):
@@ -216,6 +219,6 @@ def _finding(blocked: Blocked) -> Finding:
         code="W_NOT_INSERTABLE",
         where=f"parts.{blocked.parts[0]}",
         parts=blocked.parts,
-        message=f"{' and '.join(blocked.parts)} cannot be put together by moves in straight lines: {ways}.",
+        message=f"No order was found in which {' and '.join(blocked.parts)} get to their places one after the other, in one or two straight moves each: {ways}.",
         hint=blocked.remedy,
     )

@@ -509,7 +509,7 @@ CODES: dict[str, Code] = {
     "W_NOT_INSERTABLE": Code(
         "interference",
         "design",
-        "A part cannot be put in place by one or two straight moves.",
+        "No order was found in which parts get to their places one after the other, in one or two straight moves each.",
         "Open one side, split a part, or let it snap or rotate into place.",
     ),
     "W_NOT_CERTIFIED": Code(

@@ -41,7 +41,8 @@ def test_every_path_is_free_where_it_was_sampled(stored: dict[str, Any]) -> None
 
 
 def test_what_is_told_of_pictures_is_of_products_that_are_blocked(orders: ModuleType, stored: dict[str, Any]) -> None:
-    assert set(orders.LOOKED) <= {key for key, row in stored["rows"].items() if row["blocked"]}
+    assert {*orders.LOOKED, *orders.REFUTED} <= {key for key, row in stored["rows"].items() if row["blocked"]}
+    assert not set(orders.LOOKED) & set(orders.REFUTED)
 
 
 def test_a_product_that_changed_has_another_digest(orders: ModuleType, tmp_path: Path) -> None:
