@@ -30,10 +30,7 @@ _AXIS: Final = 1e-6  # of a unit vector: it points along an axis
 
 Vector3 = tuple[float, float, float]
 
-NOT_CHECKED = (
-    "Parts are rigid; room for hands and tools, the order of adhesives, and whether a step needs a fixture are not checked. Each part gets to its place "
-    "at once: that one waits beside it until others are in is not tried."
-)
+NOT_CHECKED = "Parts are rigid; room for hands and tools, the order of adhesives, and whether a step needs a fixture are not checked."
 
 
 class _Form(BaseModel):
