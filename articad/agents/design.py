@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
+from articad.agents import excerpt
 from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import object_text, unusable
@@ -23,6 +25,7 @@ SHOWN_FINDINGS: Final = 40  # more at once are not read; the next answer brings 
 DOUBTS: Final = frozenset({"W_SCALE", "W_DENSITY", "W_DIMENSION_SIGN", "W_BORE_NARROW"})  # probably mistaken: asked about once each
 ROLE: Final = "design"
 ANALYSIS: Final = "Its analysis, made before there was a plan (where numbers differ, what the request states binds, then the plan):"
+_TOOTHED: Final = re.compile(r"(?<![a-z])gear(?!box)|teeth|tooth|pinion|\bracks?\b|sprocket|\bcogs?\b", re.IGNORECASE)
 _DIALECTS: Final = {
     "build123d": "The parts will be scripted in build123d.",
     "freecad": "The parts will be scripted in FreeCAD, as PartDesign features: boxes, cylinders, balls, and outlines of straight lines, circles and "
@@ -98,8 +101,11 @@ class Designer:
         self._tell = tell or (lambda _plan, _findings: None)
         self._answered = 0
         self._said = ""  # the last plan, whole, as JSON
+        self._unseen: Sequence[str] = ()  # parts whose orders the last request left out
         self._doubted: set[tuple[str, str]] = set()
-        words = task(request, requirements) + _dialect(request) + _recalled(memory or NoMemory(), request, requirements)
+        self._request, self._requirements, self._own_rules = request, requirements, instructions is not None
+        self._aids = _dialect(request) + _recipe(request, requirements)
+        words = task(request, requirements) + self._aids + _recalled(memory or NoMemory(), request, requirements)
         self._opening = (system(instructions or _instructions()), user(words, *pictures_of(request)))
 
     def first(self) -> AssemblyPlan:
@@ -131,10 +137,12 @@ class Designer:
             if came_back
             else ""
         )
-        words = prompt("redesign", findings=listed(findings), note=note)
+        every = tuple(findings)
+        words = prompt("redesign", findings=listed(every), note=note)
         if pictures:
             words += "\n\nPictures of the places follow; what parts have in common is red."
-        return self._until_valid((*self._opening, assistant(self._whole(plan)), user(words, *pictures)))
+        self._said = self._whole(plan)
+        return self._until_valid(self._to_change(every, words, *pictures, anew=bool(came_back)))
 
     def _whole(self, plan: AssemblyPlan) -> str:
         """Return a plan as its author wrote it, or as it is if it has changed since: fine-tuned connectors stay."""
@@ -142,8 +150,28 @@ class Designer:
             self._said = plan.dumps()
         return self._said
 
+    def _to_change(self, findings: Sequence[Finding], complaint: str, *pictures: Image, anew: bool = False) -> tuple[Message, ...]:
+        """Return the request for changes to the last plan: with what bears on the findings, or with everything, for another solution."""
+        self._unseen = ()
+        if anew or self._own_rules:
+            return (*self._opening, assistant(self._said), user(complaint, *pictures))
+        plan, fields = json.loads(self._said), None
+        if not excerpt.is_of_model(findings):
+            plan, self._unseen = excerpt.excerpt(plan, excerpt.concerned(plan, findings))
+            fields = excerpt.STATED
+        if self._unseen:
+            complaint += (
+                f"\n\nIn the plan above the {', '.join(excerpt.ORDERS)} of {', '.join(self._unseen)} are left out. They stay as they are; "
+                "where one must change, write the whole of it."
+            )
+        aids = "" if all(finding.stage == "plan" for finding in findings) else self._aids
+        told = system(prompt("design_change", rules=excerpt.rules(findings)))
+        stated = user(task(self._request, self._requirements, fields=fields) + aids, *pictures_of(self._request))
+        return (told, stated, assistant(excerpt.compact(plan)), user(complaint, *pictures))
+
     def _until_valid(self, messages: tuple[Message, ...]) -> AssemblyPlan:
         before: object = None
+        asked = messages
         alike = 0
         for number in range(1, self._tries + 1):
             self._answered += 1
@@ -156,7 +184,7 @@ class Designer:
                 if not doubts or number == self._tries:
                     return plan
                 self._doubted.update(map(_place, doubts))
-                messages = (*self._opening, assistant(self._said), user(prompt("design_doubts", findings=listed(doubts))))
+                messages = asked = self._to_change(doubts, prompt("design_doubts", findings=listed(doubts)))
                 continue
             now = None if problem else tuple((finding.code, finding.where, finding.message) for finding in findings.errors)
             alike = alike + 1 if now is not None and now == before else 0
@@ -165,10 +193,10 @@ class Designer:
                 stalled = "" if number == self._tries else " The same findings came back every time."
                 raise problem or PlanError(f"No valid plan in {number} answers.{stalled}\n{findings}", findings=findings)
             if problem:
-                complaint = prompt("form_repair", problem=problem.message)
+                messages = (*asked, assistant(reply.text), user(prompt("form_repair", problem=problem.message)))
             else:
                 complaint = prompt("design_anew" if alike else "design_repair", findings=listed(findings))
-            messages = (*self._opening, assistant(reply.text if problem else self._said), user(complaint))
+                messages = asked = self._to_change(tuple(findings), complaint, anew=alike > 0)
         raise AssertionError("the last try either returns or raises")
 
     def _read(self, text: str, step: str) -> Judged:
@@ -176,8 +204,12 @@ class Designer:
         try:
             whole = object_text(text, step=step)
             changes = changes_of(json.loads(whole))
-            if changes is not None and self._said:
-                whole, changes = json.dumps(amended(json.loads(self._said), changes), indent=1, ensure_ascii=False), None
+            if changes is not None:
+                if not self._said:
+                    raise unusable("it has changes, but there is no plan yet; answer with the whole plan.", text, step=step)
+                plan = json.loads(self._said)
+                changes = excerpt.with_orders(changes, plan, self._unseen)
+                whole, changes = json.dumps(amended(plan, changes), indent=1, ensure_ascii=False), None
         except OutputError as error:
             return None, error.findings, error
         except ReadError as error:
@@ -219,19 +251,24 @@ def judged(text: str, step: str) -> Judged:
 
 
 def _instructions() -> str:
-    return prompt("design", example=prompt_file("sewing_box.json"))
+    return prompt("design", example=excerpt.compact(json.loads(prompt_file("sewing_box.json"))))
 
 
-def task(request: RunRequest, requirements: Requirements) -> str:
-    """Return a request and its analysis as text."""
+def task(request: RunRequest, requirements: Requirements, *, fields: Sequence[str] | None = None) -> str:
+    """Return a request and its analysis as text; of the analysis all or some fields."""
     words = request.prompt.strip() or "(no words; see the pictures)"
-    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{requirements.told()}\n```"
+    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n{requirements.told(fields)}"
 
 
 def _dialect(request: RunRequest) -> str:
     """Return the text about the script language and its limits."""
     told = _DIALECTS.get(str(request.options.get("kernel")))
     return "" if told is None else f"\n\n{told}"
+
+
+def _recipe(request: RunRequest, requirements: Requirements) -> str:
+    """Return how to order teeth, where the product may have some."""
+    return f"\n\n{prompt('teeth')}" if _TOOTHED.search(f"{request.prompt}\n{requirements.told()}") else ""
 
 
 def _recalled(memory: Memory, request: RunRequest, requirements: Requirements) -> str:

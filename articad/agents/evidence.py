@@ -102,10 +102,13 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
     """Return the measurements as text for a judge: numbers rounded, nothing that depends on the machine."""
     mechanism = assembly.mechanism
     lines = [f"Exact checks: {'passed' if evidence.ok else 'NOT passed'}."]
-    lines += [f"- {finding}" for finding in evidence.findings] or ["- no findings"]
+    lines += [f"- {finding}" for finding in evidence.checks.findings] or ["- no findings"]
     pairs = len({pair.parts for pair in evidence.checks.pairs})
     lines += [f"- {pairs} pairs of parts come near each other: compared at rest and along each joint's range, all other joints at rest."]
     lines += ["- Two joints were not moved together."] if len(assembly.drivers) > 1 else []
+    if evidence.joints:
+        lines += ["", "What surfaces leave open of the joints (warnings; no check fails by them, and plans need not solve retention):"]
+        lines += [f"- {finding}" for finding in evidence.joints]
     whole = assembly.mass()
     lines += ["", f"Mass {short(whole.mass)} kg; centre of mass at rest {placed(whole.com)} mm."]
     lines += [

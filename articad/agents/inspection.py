@@ -6,7 +6,6 @@ Part: one model compares its pictures with its specification. Assembly: one mode
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -33,6 +32,11 @@ VERDICT_SCHEMA: Final = "articad.verdict/1"
 UNSEEN: Final = "not seen"
 MOTIONS: Final = 6  # keyframe sheets for one observer; more pictures at once are not looked at closely
 Aspect = Literal["placement", "interference", "motion"]
+_SEEN: Final = (
+    "relations",
+    "motions",
+    "assumptions",
+)  # of the analysis: what pictures can show beyond the parts, which are listed as built
 _ASPECTS: Final = ("placement", "interference", "motion")
 _CODES: Final = {aspect: f"E_VERDICT_{aspect.upper()}" for aspect in _ASPECTS}
 
@@ -122,6 +126,12 @@ Expected = bool | Literal["not seen"]
 """Whether something is as the request has it; "not seen" where no picture shows it, which is neither."""
 
 
+def _as(expected: Expected) -> str:
+    if isinstance(expected, bool):
+        return "as expected" if expected else "NOT as expected"
+    return UNSEEN
+
+
 class PartSeen(ReplyForm):
     """What was seen of a part."""
 
@@ -150,6 +160,12 @@ class Observations(ReplyForm):
         """The parts and the joints of which the observer saw nothing."""
         parts = [one.part for one in self.parts if one.expected == UNSEEN]
         return parts, [one.joint for one in self.motions if one.expected == UNSEEN]
+
+    def told(self) -> str:
+        """Return the observations as a prompt holds them: a line for each part and motion."""
+        lines = [self.overall, *(f"part {one.part} ({_as(one.expected)}): {one.seen}" for one in self.parts)]
+        lines += [f"motion of joint {one.joint} ({_as(one.expected)}): {one.seen}" for one in self.motions]
+        return "\n".join(f"- {' '.join(line.split())}" for line in lines)
 
     def with_second(self, second: Observations) -> Observations:
         """Return these observations with what another look shows in place of what was not seen."""
@@ -248,10 +264,9 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
     Raises:
         OutputError: If no reply has the required form.
     """
-    product = f"{asked_for(request, requirements)}\n\n{structure(assembly)}{_assumed(assembly)}"
-    observations = _observed(assembly, [product, *wanted(request)], llm, number)
-    seen = json.dumps(observations.model_dump(mode="json"), separators=(",", ":"), ensure_ascii=False)
-    words = f"{product}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n```json\n{seen}\n```"
+    made = f"{structure(assembly)}{_assumed(assembly)}"
+    observations = _observed(assembly, [f"{asked_for(request, requirements, fields=_SEEN)}\n\n{made}", *wanted(request)], llm, number)
+    words = f"{asked_for(request, requirements)}\n\n{made}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n{observations.told()}"
     judgement = ask(
         llm, "judge", f"judge/{number}/1", (system(prompt("judge")), user(words)), _judgement_of(assembly), schema=schema_of(Judgement)
     )
@@ -358,10 +373,10 @@ def wanted(request: RunRequest) -> tuple[str | Image, ...]:
     return ("The customer's own pictures of what is wanted, not of what was built:", *pictures) if pictures else ()
 
 
-def asked_for(request: RunRequest, requirements: Requirements) -> str:
-    """Return a request and its analysis as text."""
+def asked_for(request: RunRequest, requirements: Requirements, *, fields: Sequence[str] | None = None) -> str:
+    """Return a request and its analysis as text; of the analysis all or some fields."""
     words = request.prompt.strip() or "(no words; there were pictures)"
-    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{requirements.told()}\n```"
+    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n{requirements.told(fields)}"
 
 
 def structure(assembly: Assembly) -> str:

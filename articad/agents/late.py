@@ -13,6 +13,7 @@ from typing import Final
 from pydantic import Field
 
 from articad.agents.design import Designer, Judged, judged, listed, task
+from articad.agents.excerpt import compact
 from articad.agents.line import Line, PlanAuthor
 from articad.agents.llm import Image, Message, Request, assistant, system, user
 from articad.agents.numbers import listed_numbers, short
@@ -233,4 +234,4 @@ def _alone(plan: AssemblyPlan, name: str) -> AssemblyPlan:
 
 def _example() -> str:
     document = _bare(json.loads(prompt_file("sewing_box.json")))
-    return AssemblyPlan.from_json(document).dumps()
+    return compact(AssemblyPlan.from_json(document).to_json())

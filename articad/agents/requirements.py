@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field
@@ -83,10 +84,32 @@ class Requirements(ReplyForm):
         document: dict[str, Any] = self.model_dump(mode="json", by_alias=True, exclude=set() if self.open_ended else {"open_ended"})
         return document
 
-    def told(self) -> str:
-        """Return the analysis as a prompt holds it: JSON without spaces and without the name of its form."""
-        stated = {name: value for name, value in self.to_json().items() if name != "schema"}
-        return json.dumps(stated, separators=(",", ":"), ensure_ascii=False)
+    def told(self, fields: Sequence[str] | None = None) -> str:
+        """Return the analysis, or some of its fields, as a prompt holds it: a line for each thing, without the name of its form."""
+        lines: list[str] = []
+        for name in type(self).model_fields if fields is None else fields:
+            stated = getattr(self, name)
+            if isinstance(stated, tuple):
+                lines += [f"{name}:{'' if stated else ' none'}", *(f"- {_one_line(_text(entry))}" for entry in stated)]
+            elif name not in {"form", "open_ended"} or stated is True:
+                lines.append(f"{name}: {_one_line(str(stated))}")
+        return "\n".join(lines)
+
+
+def _text(stated: Component | Motion | Dimension | str) -> str:
+    match stated:
+        case Component():
+            return f"{stated.name}{f' ({stated.count} of them)' if stated.count > 1 else ''}: {stated.description}"
+        case Motion():
+            return f"{stated.component} {stated.kind} against {stated.relative_to}; axis: {stated.axis}; range: {stated.range}"
+        case Dimension():
+            return f"{stated.of}, {stated.what}: {stated.value:.12g}{'' if stated.unit == '1' else f' {stated.unit}'} ({stated.source})"
+    return stated
+
+
+def _one_line(text: str) -> str:
+    """Return text in which nothing begins a line of its own, so that no entry looks like another section."""
+    return " ".join(text.split())
 
 
 def response_schema() -> dict[str, Any]:

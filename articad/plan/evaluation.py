@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Mapping
 
@@ -11,8 +12,8 @@ import numpy as np
 from articad.connectors import SE3
 from articad.errors import did_you_mean
 from articad.findings import Finding, relocated
-from articad.plan.expressions import RESERVED, ExpressionError, cycle_error, parse, unknown_parameter
-from articad.plan.schema import AssemblyPlan, Parameter, Pose
+from articad.plan.expressions import FUNCTIONS, RESERVED, ExpressionError, cycle_error, parse, unknown_parameter
+from articad.plan.schema import AssemblyPlan, Parameter, PartSpec, Pose
 
 NAN = math.nan
 LARGEST = 1e12  # mm, or any unit: a million kilometres
@@ -64,8 +65,11 @@ class Evaluation:
                 )
         for parameter in self.plan.parameters:
             if parameter.name in RESERVED:
-                message = f"{parameter.name!r} is the name of a function or constant of expressions."
-                self.report("E_NAME", f"parameters.{parameter.name}.name", message, f"Rename it, for example to {parameter.name}_value.")
+                message = (
+                    f"{parameter.name!r} is the name of a function or constant of expressions, so no expression can use the parameter."
+                )
+                hint = f"Rename it, for example to {parameter.name}_value, here and in each expression that uses it."
+                self.report("E_NAME", f"parameters.{parameter.name}.name", message, hint)
             self._check_bounds(parameter)
 
     def bounds(self, parameter: Parameter) -> tuple[float, float]:
@@ -128,11 +132,31 @@ class Evaluation:
                 return NAN
             for name in expression.names:
                 if name not in self._given:
-                    raise unknown_parameter(number, name, self._given)
+                    raise self._of_a_dimension(number, name, where) or unknown_parameter(number, name, self._given)
             return self._sane(expression.evaluate(self.values), where, path)
         except ExpressionError as error:
-            self.findings.append(relocated(error.findings[0], ".".join((where, *path))))
+            if not self._clashes(number):  # that is reported once, where the parameter is declared
+                self.findings.append(relocated(error.findings[0], ".".join((where, *path))))
             return NAN
+
+    def _clashes(self, expression: str) -> bool:
+        """Return whether an expression uses a parameter that is called like a function."""
+        return any(re.search(rf"\b{name}\b(?!\s*\()", expression) for name in self._given if name in FUNCTIONS)
+
+    def _of_a_dimension(self, expression: str, name: str, where: str) -> ExpressionError | None:
+        """Return the error for an expression of a part that uses one of its dimensions; None if it has no such dimension."""
+        part = next(
+            (part for part in self.plan.parts if isinstance(part, PartSpec) and f"{where}.".startswith(f"parts.{part.name}.")), None
+        )
+        if part is None or name not in part.dimensions:
+            return None
+        value = str(part.dimensions[name])
+        if re.search(rf"\b{name}\b", value):  # it is made of the missing parameter itself
+            return None
+        simple = expression == name or re.fullmatch(r"[\w.]+", value)
+        written = re.sub(rf"\b{name}\b", value if simple else f"({value})", expression)
+        message = f"{expression!r} cannot be read: {name} is a dimension of {part.name}, and expressions see parameters only."
+        return ExpressionError("E_EXPRESSION", message, f"Write it in parameters: {written!r}.")
 
     def _sane(self, value: float, where: str, path: tuple[str, ...]) -> float:
         """Return the value, or NaN after reporting one that is too large: its square must still be finite."""

@@ -105,6 +105,23 @@ def renamed(finding: Finding, _plan: Json, _match: Match) -> Json:
     return {f"{finding.where}.name": f"{last(finding.where)}_2"}
 
 
+def renamed_everywhere(finding: Finding, plan: Json, match: Match) -> Json:
+    """Rename a parameter where it is declared, and in all texts that are not words or names."""
+    old = finding.where.split(".")[1]
+    words = {"schema", "name", "description", "orientation", "role", "label", "parent", "child", "material", "ground", "assumptions"}
+
+    def written(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: entry if key in words else written(entry) for key, entry in value.items()}
+        if isinstance(value, list):
+            return [written(entry) for entry in value]
+        return re.sub(rf"\b{old}\b", match[1], value) if isinstance(value, str) else value
+
+    changed: Json = {room: written(entries) for room, entries in plan.items() if room in {"parameters", "parts", "joints", "couplings"}}
+    _entry(changed, "parameters", old)["name"] = match[1]
+    return changed
+
+
 def scaled(factor: float) -> Follow:
     def change(_finding: Finding, plan: Json, _match: Match) -> Json:
         boxes = {each["name"]: each["envelope_mm"] for each in plan["parts"] if "envelope_mm" in each}
@@ -277,7 +294,8 @@ RULES = [
         r"Declare connector '(\w+)' on (\w+)",
         lambda _f, _p, m: {f"parts.{m[2]}.connectors.{m[1]}": {"o": [0, 0, 0], "z": [1, 0, 0], "label": ""}},
     ),
-    Rule(r"Rename it, for example to (\w+)", lambda finding, _plan, match: {finding.where: match[1]}),
+    Rule(r"Rename it, for example to (\w+), here and in each expression", renamed_everywhere),
+    Rule(r"Write it in parameters: (['\"])(.+)\1\.", lambda finding, _plan, match: {finding.where: match[2]}),
     Rule(r"Rename all but one", renamed),
     Rule(r"Did you mean '(\w+)'\?", respelt),
     Rule(r"Give one of (\w+)\b.* a number", lambda _finding, _plan, match: {f"parameters.{match[1]}.value": 1}),

@@ -183,6 +183,7 @@ def test_every_prompt_that_wants_an_object_tells_its_form_and_is_left_alone_by_t
         "edit",
         "review",
         "design_late",
+        "design_change",
         "connect",
     ):
         assert _TOLD in prompt_file(f"{name}.md"), name

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from articad.agents import evidence
 from articad.agents.design import _DIALECTS, Designer
 from articad.agents.llm import Image, Replay, Request, Scripted, closed_port, require_open_port
 from articad.agents.part_writer import _EXAMPLES
@@ -19,8 +20,10 @@ from articad.agents.pipeline import generate, replay
 from articad.agents.requirements import Requirements
 from articad.agents.settings import Services
 from articad.errors import ContractError, TransportError
+from articad.findings import Finding, Findings
 from articad.plan.schema import AssemblyPlan
 from articad.render.pictures import RECIPE
+from articad.runs.record import assembly_of
 from articad.runs.run import Run, differences
 from tests.agents import stories
 from tests.agents.stories import FLAP_PLAN, FLAP_SCRIPTS, LOOKS_RIGHT, fenced, flap, judged, looks, observed, watched
@@ -145,6 +148,16 @@ def test_every_part_is_looked_at_once_then_the_whole_is_observed_and_judged(tmp_
     verdict = run.verdict()
     assert verdict is not None
     assert (verdict["ok"], verdict["by"], verdict["round"]) == (True, "judge", 1)
+
+
+def test_a_warning_that_no_check_fails_by_does_not_stand_beside_the_checks_that_passed(tmp_path: Path) -> None:
+    assembly = assembly_of(made(tmp_path, flap()), cache=stories.shared_cache())
+    partly = Finding(code="W_JOINT_PARTLY_MADE", where="joints.hinge", message="The flap slides off its pin.", hint="Add a collar.")
+
+    told = evidence.told(assembly, replace(evidence.examine(assembly), joints=Findings([partly])))
+    (checked,) = [block for block in told.split("\n\n") if block.startswith("Exact checks: passed.")]
+    assert "W_" not in checked
+    assert f"no check fails by them, and plans need not solve retention):\n- {partly}" in told
 
 
 def test_an_observer_compares_with_the_customers_pictures_and_a_judge_reads_what_it_saw(tmp_path: Path) -> None:
@@ -654,8 +667,8 @@ def test_what_is_not_seen_at_second_sight_never_counts_as_agreed(tmp_path: Path)
     run = made(tmp_path, llm)
 
     told = said(llm, "judge/1/1")
-    assert '"expected":"not seen"' in told
-    assert '"expected":true' not in told
+    assert "- motion of joint hinge (not seen): " in told
+    assert "as expected)" not in told
     verdict = run.verdict()
     assert verdict is not None
     assert [(finding["code"], finding["where"]) for finding in verdict["findings"]] == [("W_OBSERVER_UNSEEN", "joints.hinge")]

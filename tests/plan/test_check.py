@@ -77,7 +77,10 @@ TURNING = {"joints": ["turn_small", "turn_large"]}
 CASES = [
     # numbers
     Case(
-        "E_NAME", chest_with(lambda p: both(p, {"name": "sin", "value": 1})), "parameters.sin.name", "Rename it, for example to sin_value."
+        "E_NAME",
+        chest_with(lambda p: both(p, {"name": "sin", "value": 1})),
+        "parameters.sin.name",
+        "Rename it, for example to sin_value, here and in each expression that uses it.",
     ),
     Case(
         "E_DUP_NAME",
@@ -91,6 +94,28 @@ CASES = [
         chest_with(lambda p: connector(p, "box", "hinge").update(o=["widht / 2", 100, 80])),
         "parts.box.connectors.hinge.o[0]",
         "Did you mean 'width'?",
+    ),
+    Case(
+        "E_EXPRESSION",
+        chest_with(
+            lambda p: (
+                connector(p, "box", "hinge").update(o=["-2 * half", 100, 80])
+                or part(p, "box").setdefault("dimensions", {}).update(half="width / 8")
+            )
+        ),
+        "parts.box.connectors.hinge.o[0]",
+        "half is a dimension of box, and expressions see parameters only. Write it in parameters: '-2 * (width / 8)'.",
+    ),
+    Case(
+        "E_NAME",
+        chest_with(
+            lambda p: (
+                p["parameters"].append({"name": "floor", "value": 50})
+                or part(p, "box").setdefault("dimensions", {}).update(a="floor / 2", b="2 + floor", c="floor")
+            )
+        ),
+        "parameters.floor.name",
+        "Rename it, for example to floor_value, here and in each expression that uses it.",
     ),
     Case(
         "E_EXPRESSION_CYCLE",
