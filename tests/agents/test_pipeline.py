@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from articad.agents import design as design_module
+from articad.agents.excerpt import compact
 from articad.agents.llm import Budget, Replay, Reply, Request, Scripted, transport_error
 from articad.agents.pipeline import generate, replay, resume
 from articad.agents.settings import Services
@@ -141,9 +142,9 @@ def test_findings_of_a_plan_go_back_with_the_plan_until_it_validates(tmp_path: P
     second, third = said(of(llm, "design/2")), said(of(llm, "design/3"))
 
     assert "E_CONNECTOR_UNKNOWN joints.hinge" in second
-    assert json.dumps(wrong) in second
+    assert compact(wrong) in second
     assert "E_DOF_MISMATCH" in third
-    assert json.dumps(wrong) not in third
+    assert compact(wrong) not in third
 
 
 def test_a_plan_that_never_validates_ends_with_its_findings_and_keeps_what_was_understood(tmp_path: Path) -> None:
