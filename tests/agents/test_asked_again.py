@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from articad.agents.design import Designer
-from articad.agents.requirements import Requirements, reader
+from articad.agents.replies import reader
+from articad.agents.requirements import Requirements
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 from benchmarks.requests import AGAIN, ROOT, SLIPS, AsRecorded
