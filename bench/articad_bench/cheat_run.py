@@ -28,7 +28,7 @@ from articad_bench.solids import occupied
 from articad_bench.subject import Subject
 from articad_bench.task import Task, read_json, read_task
 
-__all__ = ["SCHEMA", "CheatRow", "page", "refused_by", "run_cheats"]
+__all__ = ["COSTLY", "SCHEMA", "CheatRow", "page", "refused_by", "run_cheats"]
 
 SCHEMA: Final = "articad.bench-cheats/1"
 SAME: Final = 0.01  # share of the matter by which a mirror image may differ from what it mirrors
@@ -46,7 +46,7 @@ _SOURCES: Final = (
     "subject.py",
     "cheats.py",
 )
-_COSTLY: Final = ("made", "captive", "clear_in_motion", "certified", "simulates")  # the least costly first
+COSTLY: Final = ("made", "captive", "clear_in_motion", "certified", "simulates")  # the least costly first
 
 _ABOUT: Final = """\
 # Cheats
@@ -213,7 +213,7 @@ def _tried(
 
 def refused_by(task: Task, subject: Subject) -> tuple[str, str] | None:
     """Return kind and measurement of a check that does not hold, those that cost little first; None if all hold."""
-    order = {kind: place for place, kind in enumerate(_COSTLY, start=1)}
+    order = {kind: place for place, kind in enumerate(COSTLY, start=1)}
     for check in sorted(task.checks, key=lambda check: order.get(check.kind, 0)):
         judgement = check.judge(subject)
         if not judgement.ok:
