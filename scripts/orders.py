@@ -167,6 +167,10 @@ LOOKED: Final[Mapping[str, str]] = {
     "task:sarrus_lifter": "Each leaf is between two lugs whose pins reach into its eye from both sides; lugs, pins and plate are one piece, below as above.",
     "task:scotch_yoke_pump": "The crank pin is one piece with the disc below the block and with a head above it that is wider than the block's bore; the yoke's rods end "
     "in posts on both sides, which are one piece with the base.",
+    "task:shaper_quick_return": "The rod of the ram passes through a closed bore and ends in posts on both sides, which are one piece with the base; the link is on the pins of lever "
+    "and ram from both sides.",
+    "task:vice_dividing": "The spindle is one piece with a screw between the blocks of the bed that is wider than their closed bores, and with a bar outside; the blocks are one piece with the "
+    "bed.",
     "task:tongs_lazy": "The slide leaves the lower end of its rod only below the height at which the tongs, drawn out, stop: there the pin of `falling` meets the eye of `rising`. "
     "`falling` is between `rising` and the slide, whose pins are in its eyes from both sides.",
     "task:steering_rack": "The rod on which the rack bar slides passes through a closed bore and ends in posts on both sides, which are one piece with the chassis.",
