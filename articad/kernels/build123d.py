@@ -29,7 +29,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Solid
 from articad.kernels import sandbox as isolation
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
-from articad.kernels.dimensions import WAITING, failed_attempt, fingerprint, is_out_of_time, probed
+from articad.kernels.dimensions import failed_attempt, fingerprint, is_out_of_time, probed
 from articad.kernels.failures import poisoned, script_failure, unconfined
 from articad.kernels.kernel import BuildCache, BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, number, numbers, read_bytes, read_lines, read_mesh
@@ -78,8 +78,8 @@ class Build123dKernel:
         Args:
             sandbox: `strict` refuses to run scripts if neither Landlock nor bubblewrap works, `weak` does not; by default
                 `$ARTICAD_SANDBOX`, else strict.
-            timeout: Wall clock of a script [s].
-            probe_timeout: Processor time of its dimension probe [s]; the wall clock may be `dimensions.WAITING` times as long.
+            timeout: Processor time of a script [s]; the wall clock may be `timers.WAITING` times as long.
+            probe_timeout: Likewise of its dimension probe [s].
             memory: Address space of a script [bytes].
             layers: Layers of isolation to apply, if available; all by default. Fewer serve to measure the effect of each.
         """
@@ -363,7 +363,7 @@ class Build123dKernel:
         """Build the part with each dimension changed; return an outcome for each that was done in time."""
 
         def attempt(dimensions: Json, seconds: float) -> tuple[list[float] | Json | None, float]:
-            limits = replace(self.limits, seconds=WAITING * seconds, probe_seconds=0.0, cpu_seconds=seconds)
+            limits = replace(self.limits, seconds=seconds, probe_seconds=0.0)
             with self.job_folder() as job:
                 ran = self._run(
                     "script", job, {"script": script, "part": {**brief, "dimensions": dimensions}}, {"shape": "shape.bin"}, limits

@@ -17,6 +17,7 @@ from articad.errors import ConnectorError, did_you_mean
 from articad.findings import Finding, Findings
 from articad.kernels.failures import scrubbed
 from articad.kernels.results import PoisonedError, number, numbers
+from articad.kernels.timers import OUT_OF_TIME
 from articad.plan.fields import lengths_in
 from articad.plan.resolve import ResolvedPart
 from articad.plan.signatures import functions_in
@@ -314,7 +315,7 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
             message = f"The kernel crashes ({scrubbed(outcome.get('signal'))}) when dimension {dimension!r} is moved by {step}."
             yield _finding("E_NOT_EDITABLE", name, message, "Write the geometry so that it follows its dimensions.", dimension=dimension)
     missed = [dimension for dimension in brief["dimensions"] if dimension not in reached]
-    if crashed and crashed not in ("SIGALRM", "SIGKILL", "SIGXCPU") and missed:
+    if crashed and crashed not in (*OUT_OF_TIME, "SIGKILL") and missed:
         message = f"The kernel crashes ({crashed}) when dimension {missed[0]!r} is moved by 2 %."
         yield _finding("E_NOT_EDITABLE", name, message, "Write the geometry so that it follows its dimensions.", dimension=missed[0])
         missed = missed[1:]

@@ -11,13 +11,13 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
 from articad.kernels.results import number, numbers
+from articad.kernels.timers import OUT_OF_TIME, WAITING
 
-__all__ = ["WAITING", "failed_attempt", "fingerprint", "is_out_of_time", "probed"]
+__all__ = ["failed_attempt", "fingerprint", "is_out_of_time", "probed"]
 
 STEP: Final = 0.02  # the contract's 2 %
 ZERO_MM, ZERO_DEG = 0.1, 1.0  # steps for a dimension that is zero
 LEAST_SECONDS, PATIENCE = 3.0, 10.0  # a dimension changed by 2 % does not make a script ten times as slow
-WAITING: Final = 5.0  # wall clock over processor time: a process that needs more is stopped, because it waits for something
 SAME: Final = 1e-9  # relative change of a number that is rounding
 _ORDER: Final = ("changed", "unused", "refused", "broken", "crashed")
 
@@ -113,7 +113,7 @@ def is_out_of_time(signal: str, *, late: bool) -> bool:
         signal: The signal that ended it, or empty.
         late: Whether it was killed at its deadline.
     """
-    return late or signal in {"SIGALRM", "SIGKILL", "SIGXCPU"}
+    return late or signal in (*OUT_OF_TIME, "SIGKILL")
 
 
 def _moves(name: str, value: float) -> Iterator[float]:

@@ -9,6 +9,7 @@ from typing import Any, TypeGuard
 from articad.errors import BuildError, SandboxError
 from articad.findings import Finding
 from articad.kernels.sandbox import HOW_TO_GET, ScriptLimits
+from articad.kernels.timers import OUT_OF_TIME
 from articad.kernels.zygote import JobOutcome, ends_by
 
 MEMORY_SHARE = 0.5  # a crash of a process that used this share of its limit is ascribed to lack of memory
@@ -69,7 +70,7 @@ def _died(part: str, script: str, outcome: JobOutcome, crash: str, limits: Scrip
     """Return the error of a script whose process ended before it could report anything."""
     frames: Frames = [(int(line), function) for line, function in reversed(_CRASH_FRAME.findall(crash)[:20])]
     name = ends_by(outcome)
-    if outcome.late or name in ("SIGALRM", "SIGXCPU"):
+    if outcome.late or name in OUT_OF_TIME or (name == "SIGKILL" and outcome.cpu > limits.seconds):  # the last if it defies its timers
         message = f"The script ran longer than {limits.seconds:.6g} s"
         hint = "Look for an endless loop, or for a boolean operation with very many faces."
         return _error("E_SCRIPT_TIMEOUT", part, script, message, hint, frames, limit=limits.seconds, unit="s")

@@ -34,12 +34,12 @@ from articad.kernels import sandbox as isolation
 from articad.kernels.archive import Archive, BadArchiveError, packed
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
-from articad.kernels.dimensions import WAITING
 from articad.kernels.failures import poisoned, script_failure, scrubbed, unconfined
 from articad.kernels.freecad_file import rounded, settled, shortened
 from articad.kernels.freecad_install import FreeCAD, FreeCADEnded, FreeCADLimits
 from articad.kernels.kernel import BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, numbers, read_bytes, read_lines
+from articad.kernels.timers import WAITING
 from articad.kernels.zygote import JobOutcome
 
 DOCUMENT = "part.FCStd"

@@ -6,7 +6,6 @@ The result is a report, a JSON object, and the shape. Whoever reads them must no
 from __future__ import annotations
 
 import copy
-import signal
 import traceback
 from collections.abc import Callable, Iterator, Mapping
 from types import FrameType, FunctionType, SimpleNamespace
@@ -16,7 +15,7 @@ from build123d import Shape
 from OCP.BRepCheck import BRepCheck_Analyzer
 
 from articad.errors import did_you_mean
-from articad.kernels import measure
+from articad.kernels import measure, timers
 from articad.kernels.made import made
 from articad.kernels.tessellation import Same
 from articad.plan.signatures import names_for
@@ -61,11 +60,11 @@ def run(script: str, part: Json, *, seconds: float, report: Write, shape: Callab
     Args:
         script: The source.
         part: The brief of the part.
-        seconds: Wall clock for the script; the process is killed by SIGALRM after it.
+        seconds: Processor time for the script; see `timers.allow`.
         report: Receives the report.
         shape: Receives the shape, in the form that `measure.read_shape("bin", …)` reads.
     """
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    timers.allow(seconds)
     namespace: Json = {"__name__": "part", "__builtins__": __builtins__}
     try:
         exec(compile(script, FILE, "exec"), namespace)  # noqa: S102 - this is what the sandbox is for
@@ -83,7 +82,7 @@ def run(script: str, part: Json, *, seconds: float, report: Write, shape: Callab
         return
     shape(measure.binary(solid))
     report({"ok": True, "connectors": connectors})
-    signal.setitimer(signal.ITIMER_REAL, 0)
+    timers.unlimited()
 
 
 def described(error: BaseException) -> Json:

@@ -55,19 +55,17 @@ class ScriptLimits:
     """Resources that one script may use.
 
     Attributes:
-        seconds: Wall clock until its shape must be there.
+        seconds: Processor time until its shape must be there; the wall clock may be `timers.WAITING` times as long.
         probe_seconds: Wall clock for what follows, such as further checks of a shape that was measured; of the dimension probe, whose
             processes are limited one by one, the processor time.
         memory: Address space [bytes], libraries (1 GiB) included.
         file_size: Largest size of each result [bytes].
-        cpu_seconds: Processor time, rounded up to whole seconds; None if the wall clock alone ends it.
     """
 
     seconds: float = 60.0
     probe_seconds: float = 30.0
     memory: int = 3 * 2**30
     file_size: int = 256 * 2**20
-    cpu_seconds: float | None = None
 
 
 def level() -> str:
@@ -232,10 +230,7 @@ def die_with_parent(signal_number: int, parent: int) -> None:
 def _limit_resources(limits: ScriptLimits) -> None:
     import resource  # noqa: PLC0415 - Windows has none, and this module is imported there
 
-    # Twice the wall clock on every processor is only reached by threads that survive the kill at the wall clock's limit.
-    cpu = int(2 * (limits.seconds + limits.probe_seconds) * (os.cpu_count() or 1)) + 1
-    if limits.cpu_seconds is not None:
-        cpu = math.ceil(limits.cpu_seconds)
+    cpu = math.ceil(limits.seconds + limits.probe_seconds) + 1  # only a process that defies its timers gets there
     for what, value in (
         (resource.RLIMIT_AS, limits.memory),
         (resource.RLIMIT_FSIZE, limits.file_size),

@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import math
 import os
-import signal
 from typing import Any
 
-from articad.kernels import measure, part_script, projection, step_tree, tracing
+from articad.kernels import measure, part_script, projection, step_tree, timers, tracing
 
-SELF_INTERSECTION_SECONDS = 5.0  # the check is quadratic in faces; a swept thread would need 12 s
+SELF_INTERSECTION_SECONDS = 5.0  # of processor time: the check is quadratic in faces; a swept thread would need 12 s
 
 Json = dict[str, Any]
 
@@ -42,7 +41,7 @@ def trace_script(request: Json, files: dict[str, int]) -> None:
 def measure_shape(request: Json, files: dict[str, int]) -> None:
     """Tasks `measure` (the shape of a script, or a STEP or B-rep file, moved or mirrored) and `pieces` (the solids of a failed script)."""
     job = json.loads(_content(files["job"]))
-    signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
+    timers.allow(request["limits"]["seconds"])
     try:
         shape = measure.read_shape(job["form"], _content(files["shape"]))
     except (ValueError, RuntimeError) as error:
@@ -57,13 +56,13 @@ def measure_shape(request: Json, files: dict[str, int]) -> None:
         _write(files[name], content)
     _write(files["report"], measure.to_json(measured.report))
     if measured.report.get("valid") and measured.files:
-        signal.setitimer(signal.ITIMER_REAL, SELF_INTERSECTION_SECONDS)
+        timers.processor_time(SELF_INTERSECTION_SECONDS)
         _write(files["report"], measure.to_json(measure.self_intersection(measure.solids_of(shape)[job.get("place") or 0])))
 
 
 def judge_shape(request: Json, files: dict[str, int]) -> None:
     """Task `judge`: whether a script's shape is one valid solid, and its properties; no mesh, no files."""
-    signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
+    timers.allow(request["limits"]["seconds"])
     try:
         shape = measure.read_shape("bin", _content(files["shape"]))
     except (ValueError, RuntimeError) as error:
@@ -77,7 +76,7 @@ def judge_shape(request: Json, files: dict[str, int]) -> None:
 def read_assembly(request: Json, files: dict[str, int]) -> None:
     """Task `assembly`: the products of a STEP file. The report's first line says whether it could be read; each other one is a part."""
     job = json.loads(_content(files["job"]))
-    signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
+    timers.allow(request["limits"]["seconds"])
     try:
         rows, mesh = step_tree.read(_content(files["shape"]), deflection=job["deflection_mm"], angle=math.radians(job["angle_deg"]))
     except (ValueError, RuntimeError) as error:
@@ -90,7 +89,7 @@ def read_assembly(request: Json, files: dict[str, int]) -> None:
 def project_shapes(request: Json, files: dict[str, int]) -> None:
     """Task `project`: views of B-reps, each of which is placed in one frame, as lines on paper."""
     job, content = json.loads(_content(files["job"])), _content(files["shape"])
-    signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
+    timers.allow(request["limits"]["seconds"])
     shapes, start = [], 0
     for length, matrix in zip(job["lengths"], job["matrices"], strict=True):
         shapes.append(measure.placed(measure.read_shape("brep", content[start : start + length]), matrix))

@@ -5,7 +5,6 @@ Untrusted code, in a confined process of its own; whoever reads the report must 
 
 from __future__ import annotations
 
-import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final
@@ -16,7 +15,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
-from articad.kernels import measure
+from articad.kernels import measure, timers
 from articad.kernels.part_script import FILE, as_object, built, called, described, plain_connectors
 from articad.kernels.traced_numbers import Formula, formula_of, operands_first, plain, traced, traced_builtins, traced_math
 from articad.kernels.traced_shapes import Frame, NotRecordedError, TracedOperation, recorded_build123d, solid_node
@@ -46,10 +45,10 @@ def run(
         script: The source.
         part: The brief of the part.
         variations: For each, dimensions by name, and others to try where the script does not build those.
-        seconds: Wall clock; the process is killed by SIGALRM after it.
+        seconds: Processor time; see `timers.allow`.
         report: Receives each line.
     """
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    timers.allow(seconds)
     try:
         told = _recorded(script, part)
     except NotRecordedError as error:
@@ -67,7 +66,7 @@ def run(
             if measured["ok"]:
                 break
         report(measured)
-    signal.setitimer(signal.ITIMER_REAL, 0)
+    timers.unlimited()
 
 
 def _recorded(script: str, part: Json) -> Json:

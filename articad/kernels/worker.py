@@ -23,11 +23,12 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from articad.kernels import sandbox
+from articad.kernels.timers import OUT_OF_TIME, WAITING
 
 MESSAGE = 65536  # bytes of a request; a job itself travels in a file
 FILES = 8  # open files attached to a request, at most
 _PR_SET_DUMPABLE, _PR_SET_CHILD_SUBREAPER = 4, 36
-FENCE_SECONDS = 2.0  # a job that survives its own alarm is killed this much later
+FENCE_SECONDS = 2.0  # a job that survives its own timers is killed this much later
 
 Json = dict[str, Any]
 
@@ -35,7 +36,7 @@ Json = dict[str, Any]
 @dataclass
 class _Job:
     number: int
-    deadline: float  # for its first report; the kernel's own alarm comes before it
+    deadline: float  # for its first report; its own timers come before it
     last: float  # for everything after the report, such as the dimension probe
     report: int
     fault: int  # a pipe that says why the sandbox could not be set up; a script has no access to it
@@ -104,7 +105,7 @@ class ZygoteServer:
         for file in (*files, faulty):
             os.close(file)
         limits = request["limits"]
-        deadline = time.monotonic() + limits["seconds"] + FENCE_SECONDS
+        deadline = time.monotonic() + WAITING * limits["seconds"] + FENCE_SECONDS
         self._jobs[pid] = _Job(request["id"], deadline, deadline + limits["probe_seconds"], report, fault)
         return True
 
@@ -202,8 +203,8 @@ def _keep_only(files: Collection[int]) -> None:
 def _trace_crashes(file: int) -> None:
     """Write Python's frames when a signal ends the process, including the alarm: they show where a loop was."""
     faulthandler.enable(file, all_threads=False)
-    for number in (signal.SIGALRM, signal.SIGXCPU):
-        faulthandler.register(number, file, all_threads=True, chain=True)
+    for name in OUT_OF_TIME:
+        faulthandler.register(signal.Signals[name], file, all_threads=True, chain=True)
 
 
 def _last_words(pipe: int) -> str:

@@ -22,6 +22,7 @@ from articad.errors import KernelUnavailableError
 from articad.findings import Finding
 from articad.kernels import sandbox
 from articad.kernels.libraries import install_line, missing_libraries
+from articad.kernels.timers import WAITING
 from articad.processes import launcher
 
 START_SECONDS = 180.0  # the import takes 2 s, on a cold and busy disk 10 s
@@ -111,7 +112,7 @@ class Zygote:
                 del self._waiting[number]
                 raise ZygoteDiedError from error
         try:
-            return answer.result(limits.seconds + limits.probe_seconds + SILENCE_SECONDS)
+            return answer.result(WAITING * limits.seconds + limits.probe_seconds + SILENCE_SECONDS)
         except TimeoutError as error:  # stopped or broken by a script, on a machine whose layers cannot prevent it
             self._waiting.pop(number, None)
             self._kill(control)

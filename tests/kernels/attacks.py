@@ -21,10 +21,11 @@ from articad.errors import BuildError, ContractError, KernelError
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.freecad import FreeCADKernel
 from articad.kernels.sandbox import ScriptLimits
+from articad.kernels.timers import WAITING
 from tests.kernels.conftest import kernel_of_its_own
 
 MARK = "articad-secret-9f2c61"  # what no attack may see
-LIMITS = ScriptLimits(seconds=3.0, probe_seconds=0.0, memory=2 * 2**30, file_size=8 * 2**20)
+LIMITS = ScriptLimits(seconds=2.0, probe_seconds=0.0, memory=2 * 2**30, file_size=8 * 2**20)
 LEVELS: tuple[tuple[str, ...], ...] = (
     (),
     ("seccomp",),
@@ -34,7 +35,10 @@ LEVELS: tuple[tuple[str, ...], ...] = (
     ("landlock", "seccomp"),
     ("bwrap", "landlock", "seccomp"),
 )
-PATIENCE = {"build123d": LIMITS.seconds + 4.0, "freecad": LIMITS.seconds + 40.0}  # FreeCAD may take 20 s to start, and is started twice
+PATIENCE = {
+    "build123d": WAITING * LIMITS.seconds + 4.0,
+    "freecad": LIMITS.seconds + 40.0,
+}  # FreeCAD may take 20 s to start, and is started twice
 _BRIEF: dict[str, Any] = {"name": "part", "description": "", "material": "steel", "envelope_mm": None, "dimensions": {}, "connectors": {}}
 
 # A script that writes its own results and ends before anything else is written.
