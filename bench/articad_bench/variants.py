@@ -90,16 +90,19 @@ def make_variant(
         folder: Of the task.
         task: The task.
         seed: The same seed gives the same variant.
-        out: Where the folder is made; one that is there is replaced.
+        out: Where the folder is made. One that is there is not replaced.
         cache: Keeps built parts.
         kernel: Builds the references; what their plans name by default.
 
     Raises:
-        NoVariantError: If no draw of parameters gives one.
+        NoVariantError: If no draw of parameters gives one, or the folder is there already.
         ArticadError: If the task has no reference, or it does not build.
     """
     if task.edit is not None and task.edit.reference is not None:
         raise NoVariantError(f"{task.name}: a second plan makes its edit.")
+    target = out / task.name
+    if target.exists():
+        raise NoVariantError(f"{task.name}: {target} is there already, and is not replaced. Name another folder.")
     place = reference_folder(folder, task)
     plan = AssemblyPlan.load(place)
     free = _free_numbers(task, plan)
@@ -117,10 +120,11 @@ def make_variant(
             admitted(new)
             original = original or reference(folder, task, cache=cache, kernel=kernel)
             changed = {name: (free[name].value, value) for name, value in values.items()}
-            return _made(folder, task, new, changed, original, out / task.name, cache, kernel)
+            with scratch.folder_beside(target) as made:
+                told = _made(folder, task, new, changed, original, made, cache, kernel)
+            return Variant(target, told, changed)
         except ArticadError as error:
             wrong = f"{', '.join(f'{name} {value:g}' for name, value in values.items())}: {str(error).splitlines()[0]}"
-    shutil.rmtree(out / task.name, ignore_errors=True)
     raise NoVariantError(f"{task.name}: no draw of {', '.join(free)} gives a task; the last one, {wrong}")
 
 
@@ -133,7 +137,7 @@ def _made(
     target: Path,
     cache: BuildCache | None,
     kernel: PartKernel | None,
-) -> Variant:
+) -> Task:
     changes = list(changed.values())
     fresh, later = task.model_copy(update={"reference": "reference"}), changes
     if task.edit is not None:
@@ -143,8 +147,6 @@ def _made(
         edited = {name: _near(value) if name in changed else value for name, value in edited.items()}
         later = [(task.edit.values.get(name, old), edited.get(name, new)) for name, (old, new) in changed.items()]
         fresh = fresh.model_copy(update={"edit": task.edit.model_copy(update={"values": edited})})
-    if target.exists():
-        shutil.rmtree(target)
     _write_reference(plan, reference_folder(folder, task), target / "reference")
     built = reference(target, fresh, cache=cache, kernel=kernel)
     subject, after = Subject(built), None
@@ -165,7 +167,7 @@ def _made(
     if fresh.drawing is not None and DRAWING in fresh.images:
         scratch.write(target / DRAWING, draw_task(built, fresh.drawing))
     scratch.write(target / "task.json", as_stored(fresh))
-    return Variant(target, fresh, changed)
+    return fresh
 
 
 def _write_reference(plan: AssemblyPlan, source: Path, target: Path) -> None:

@@ -137,6 +137,12 @@ def test_the_command_makes_variants_and_tells_which_tasks_have_none(tmp_path: Pa
     assert "1 variants of 2 tasks with seed 2." in capsys.readouterr().out
     assert other.is_dir()
     assert [task.name for _, task in tasks_in(tmp_path / "made")] == ["tray"]
+    assert [path.name for path in (tmp_path / "made").iterdir()] == ["tray"]
+
+    kept = {path: path.read_bytes() for path in (tmp_path / "tasks").rglob("*") if path.is_file()}
+    assert main(["bench", "make", "--seed", "2", "--tasks", str(tmp_path / "tasks"), "--out", str(tmp_path / "tasks")]) == 1
+    assert f"{tmp_path / 'tasks' / 'tray'} is there already" in capsys.readouterr().out
+    assert {path: path.read_bytes() for path in (tmp_path / "tasks").rglob("*") if path.is_file()} == kept
 
 
 @pytest.mark.slow
