@@ -32,11 +32,8 @@ VERDICT_SCHEMA: Final = "articad.verdict/1"
 UNSEEN: Final = "not seen"
 MOTIONS: Final = 6  # keyframe sheets for one observer; more pictures at once are not looked at closely
 Aspect = Literal["placement", "interference", "motion"]
-_SEEN: Final = (
-    "relations",
-    "motions",
-    "assumptions",
-)  # of the analysis: what pictures can show beyond the parts, which are listed as built
+_SEEN: Final = ("relations", "motions", "assumptions")
+"""Fields of the analysis: what pictures can show beyond the parts, which are listed as built."""
 _ASPECTS: Final = ("placement", "interference", "motion")
 _CODES: Final = {aspect: f"E_VERDICT_{aspect.upper()}" for aspect in _ASPECTS}
 

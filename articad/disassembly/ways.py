@@ -19,7 +19,7 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
-from articad.interference.surface import inwards
+from articad.interference.surface import Placed
 from articad.interference.travel import Outline, first_contacts, material_met, meets
 
 __all__ = ["CLEAR_MM", "Halt", "WayOut", "Ways", "ways_of", "ways_out"]
@@ -90,7 +90,7 @@ class Ways:
     def __init__(self, scene: Scene, poses: Mapping[str, SE3], permitted: Iterable[frozenset[str]] = ()) -> None:
         self.scene, self.poses, self.permitted = scene, poses, frozenset(permitted)
         self.parts = tuple(name for name in scene.bodies if name not in scene.broken and name in poses)
-        self._corners: dict[tuple[str, float], FloatArray] = {}
+        self._placed = Placed(scene.bodies, poses)
         self._outlines: dict[tuple[str, float, int], Outline] = {}
         self._directions: list[FloatArray] = []
         self._known: dict[_Key, tuple[float, float]] = {}
@@ -216,16 +216,8 @@ class Ways:
     def _outline(self, part: str, depth: float, at: int) -> Outline:
         key = (part, depth, at)
         if key not in self._outlines:
-            self._outlines[key] = Outline.of(self._placed(part, depth), self._directions[at])
+            self._outlines[key] = Outline.of(self._placed.triangles(part, depth), self._directions[at])
         return self._outlines[key]
-
-    def _placed(self, part: str, depth: float) -> FloatArray:
-        key = (part, depth)
-        if key not in self._corners:
-            mesh = self.scene.bodies[part].mesh
-            vertices = mesh.vertices if depth == 0 else mesh.vertices + inwards(mesh, depth)
-            self._corners[key] = np.asarray(self.poses[part].apply(vertices))[mesh.triangles]
-        return self._corners[key]
 
     def _index(self, direction: FloatArray) -> tuple[int, int]:
         """Return the number of a direction or of its opposite, and the sign."""

@@ -6,6 +6,7 @@ start, then any part of a that is in b lies between the two surfaces, so no poin
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, cast
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.arrays import FloatArray
+from articad.connectors.se3 import SE3
 from articad.geometry.mesh import TriMesh
 from articad.interference.body import Body, body_of, make_bvh
 
@@ -100,6 +102,32 @@ def inwards(mesh: TriMesh, depth: float, near: Core | None = None, within: float
     if near is not None:
         moved = np.where((near.radii(mesh.vertices) <= within)[:, None], moved, 0.0)
     return np.asarray(moved * _SHORTER, dtype=np.float32)
+
+
+def inset_vertices(mesh: TriMesh, depth: float) -> FloatArray:
+    """Return the vertices of a mesh, moved inwards by a depth, `(V, 3)` [mm]."""
+    return mesh.vertices if depth == 0 else mesh.vertices + inwards(mesh, depth)
+
+
+class Placed:
+    """The triangles of parts at one pose, each computed once.
+
+    Args:
+        bodies: The parts by name.
+        poses: `T_ground_part` of the parts.
+    """
+
+    def __init__(self, bodies: Mapping[str, Body], poses: Mapping[str, SE3]) -> None:
+        self._bodies, self._poses = bodies, poses
+        self._corners: dict[tuple[str, float], FloatArray] = {}
+
+    def triangles(self, part: str, depth: float = 0.0) -> FloatArray:
+        """Return the triangles of a part in the ground frame, its surface moved inwards by a depth, `(T, 3, 3)` [mm]."""
+        key = (part, depth)
+        if key not in self._corners:
+            mesh = self._bodies[part].mesh
+            self._corners[key] = np.asarray(self._poses[part].apply(inset_vertices(mesh, depth)))[mesh.triangles]
+        return self._corners[key]
 
 
 def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float) -> tuple[Surface, Surface, Surface]:

@@ -15,9 +15,9 @@ from articad.connectors.connector import Connector, Drift
 from articad.connectors.se3 import SE3, axis_findings
 from articad.errors import ConnectorError, did_you_mean
 from articad.findings import Finding, Findings
+from articad.kernels.dimensions import is_out_of_time
 from articad.kernels.failures import scrubbed
 from articad.kernels.results import PoisonedError, number, numbers
-from articad.kernels.timers import OUT_OF_TIME
 from articad.plan.fields import lengths_in
 from articad.plan.resolve import ResolvedPart
 from articad.plan.signatures import functions_in
@@ -315,7 +315,7 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
             message = f"The kernel crashes ({scrubbed(outcome.get('signal'))}) when dimension {dimension!r} is moved by {step}."
             yield _finding("E_NOT_EDITABLE", name, message, "Write the geometry so that it follows its dimensions.", dimension=dimension)
     missed = [dimension for dimension in brief["dimensions"] if dimension not in reached]
-    if crashed and crashed not in (*OUT_OF_TIME, "SIGKILL") and missed:
+    if crashed and not is_out_of_time(crashed, late=False) and missed:
         message = f"The kernel crashes ({crashed}) when dimension {missed[0]!r} is moved by 2 %."
         yield _finding("E_NOT_EDITABLE", name, message, "Write the geometry so that it follows its dimensions.", dimension=missed[0])
         missed = missed[1:]

@@ -16,7 +16,7 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.interference.gauge import fixed_with
 from articad.interference.scene import Scene
-from articad.interference.surface import inwards
+from articad.interference.surface import Placed
 from articad.kinematics.joints import Joint
 from articad.realisation.stops import travel_past
 
@@ -48,10 +48,10 @@ class Holders:
     def __init__(self, scene: Scene, poses: Mapping[str, SE3]) -> None:
         self.scene, self.poses = scene, poses
         self.parts = [name for name in scene.bodies if name in poses and name not in scene.broken and name not in scene.environment]
-        self._corners: dict[tuple[str, float], FloatArray] = {}
+        self._placed = Placed(scene.bodies, poses)
         self._travels: dict[tuple[str, str, tuple[float, ...]], float] = {}
         self._boxes = {
-            name: (corners.min(axis=(0, 1)), corners.max(axis=(0, 1))) for name in self.parts for corners in [self._placed(name)]
+            name: (corners.min(axis=(0, 1)), corners.max(axis=(0, 1))) for name in self.parts for corners in [self._placed.triangles(name)]
         }
 
     def along(self, joint: Joint, way: FloatArray) -> Holding | None:
@@ -92,14 +92,6 @@ class Holders:
             near = (low + np.minimum(sweep, 0.0) <= high_b).all() and (high + np.maximum(sweep, 0.0) >= low_b).all()
             self._travels[key] = math.inf
             if near:
-                self._travels[key] = travel_past(self._placed(part), self._placed(part, depth), self._placed(other), way, depth)
+                surfaces = (self._placed.triangles(part), self._placed.triangles(part, depth), self._placed.triangles(other))
+                self._travels[key] = travel_past(*surfaces, way, depth)
         return self._travels[key]
-
-    def _placed(self, part: str, depth: float = 0.0) -> FloatArray:
-        """Return the triangles of a part in the ground frame, its surface moved inwards by a depth, `(T, 3, 3)` [mm]."""
-        key = (part, depth)
-        if key not in self._corners:
-            mesh = self.scene.bodies[part].mesh
-            vertices = mesh.vertices if depth == 0 else mesh.vertices + inwards(mesh, depth)
-            self._corners[key] = np.asarray(self.poses[part].apply(vertices))[mesh.triangles]
-        return self._corners[key]

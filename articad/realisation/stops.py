@@ -15,7 +15,7 @@ from articad.arrays import FloatArray
 from articad.interference.freedoms import freedoms
 from articad.interference.gauge import fixed_with, placed
 from articad.interference.scene import Scene
-from articad.interference.surface import inwards
+from articad.interference.surface import inset_vertices
 from articad.interference.travel import Outline, first_contacts
 from articad.kinematics.joints import Joint
 from articad.realisation.contacts import Pair
@@ -97,8 +97,7 @@ class Stops:
 
     def _corners(self, name: str, T: FloatArray, depth: float) -> FloatArray:
         mesh = self.scene.bodies[name].mesh
-        vertices = mesh.vertices + inwards(mesh, depth) if depth else mesh.vertices
-        return np.asarray(vertices @ T[:3, :3].T + T[:3, 3])[mesh.triangles]
+        return np.asarray(inset_vertices(mesh, depth) @ T[:3, :3].T + T[:3, 3])[mesh.triangles]
 
 
 def travel_past(moving: FloatArray, inset: FloatArray, standing: FloatArray, way: FloatArray, depth: float) -> float:
