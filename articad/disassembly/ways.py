@@ -19,7 +19,7 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
-from articad.interference.surface import Placed
+from articad.interference.surface import PlacedTriangles
 from articad.interference.travel import Outline, first_contacts, material_met, meets
 
 __all__ = ["CLEAR_MM", "Halt", "WayOut", "Ways", "ways_of", "ways_out"]
@@ -90,7 +90,7 @@ class Ways:
     def __init__(self, scene: Scene, poses: Mapping[str, SE3], permitted: Iterable[frozenset[str]] = ()) -> None:
         self.scene, self.poses, self.permitted = scene, poses, frozenset(permitted)
         self.parts = tuple(name for name in scene.bodies if name not in scene.broken and name in poses)
-        self._placed = Placed(scene.bodies, poses)
+        self._placed = PlacedTriangles(scene.bodies, poses)
         self._outlines: dict[tuple[str, float, int], Outline] = {}
         self._directions: list[FloatArray] = []
         self._known: dict[_Key, tuple[float, float]] = {}

@@ -109,7 +109,7 @@ def inset_vertices(mesh: TriMesh, depth: float) -> FloatArray:
     return mesh.vertices if depth == 0 else mesh.vertices + inwards(mesh, depth)
 
 
-class Placed:
+class PlacedTriangles:
     """The triangles of parts at one pose, each computed once.
 
     Args:

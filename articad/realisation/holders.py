@@ -16,16 +16,16 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.interference.gauge import fixed_with
 from articad.interference.scene import Scene
-from articad.interference.surface import Placed
+from articad.interference.surface import PlacedTriangles
 from articad.kinematics.joints import Joint
 from articad.realisation.stops import travel_past
 
-__all__ = ["FAR_MM", "Holders", "Holding"]
+__all__ = ["FAR_MM", "Holders", "HoldingChain"]
 
 FAR_MM: Final = 5.0  # a part that is met later holds nothing
 
 
-class Holding(NamedTuple):
+class HoldingChain(NamedTuple):
     """What ends a motion.
 
     Attributes:
@@ -48,13 +48,13 @@ class Holders:
     def __init__(self, scene: Scene, poses: Mapping[str, SE3]) -> None:
         self.scene, self.poses = scene, poses
         self.parts = [name for name in scene.bodies if name in poses and name not in scene.broken and name not in scene.environment]
-        self._placed = Placed(scene.bodies, poses)
+        self._placed = PlacedTriangles(scene.bodies, poses)
         self._travels: dict[tuple[str, str, tuple[float, ...]], float] = {}
         self._boxes = {
             name: (corners.min(axis=(0, 1)), corners.max(axis=(0, 1))) for name in self.parts for corners in [self._placed.triangles(name)]
         }
 
-    def along(self, joint: Joint, way: FloatArray) -> Holding | None:
+    def along(self, joint: Joint, way: FloatArray) -> HoldingChain | None:
         """Return what holds a joint's child against its parent in a direction, other parts between them; None if nothing does within FAR_MM.
 
         Args:
@@ -67,13 +67,13 @@ class Holders:
         members: dict[str, list[str]] = {}
         for name in self.parts:
             members.setdefault(body[name], []).append(name)
-        reached: dict[str, Holding] = {}
+        reached: dict[str, HoldingChain] = {}
         todo: list[tuple[float, tuple[str, ...], str]] = [(0.0, (), "child of the joint")]
         while todo:
             travel, chain, at = heapq.heappop(todo)
             if at in reached:
                 continue
-            reached[at] = Holding(travel, chain)
+            reached[at] = HoldingChain(travel, chain)
             if at == "parent of the joint":
                 return reached[at]
             for part in members.get(at, ()):

@@ -23,7 +23,7 @@ from articad.interference.sampled_ranges import sampled_piece
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.realisation.contacts import FaceReach, Pair, pairs
-from articad.realisation.holders import Holders, Holding
+from articad.realisation.holders import Holders, HoldingChain
 from articad.realisation.room import FAR_RAD, GROUND, Rise, Touch, far_mm, room
 from articad.realisation.sides import PartFace, Sides, sides
 from articad.realisation.stops import Stops
@@ -71,7 +71,7 @@ class FreeWay(NamedTuple):
     way: str
     room: float
     by_weight: bool
-    holding: Holding | None = None
+    holding: HoldingChain | None = None
 
 
 @dataclass(frozen=True)
