@@ -116,7 +116,7 @@ class _Taking:
         pairs = {joint.name: frozenset((joint.parent, joint.child)) for joint in self.joints}
         self.forced = {pairs[joint]: how for joint, how in self.fastenings.items() if how in _BY_FORCE}
         self.ways = Ways(scene, poses, self.forced)
-        self.open = [(Ways(scene, other.poses, self.forced), other.at) for other in others]
+        self.open = [(Ways(scene, other.poses, self.forced, self.ways.outlines), other.at) for other in others]
         self.parts = tuple(name for name in self.ways.parts if name not in scene.environment)
         self.left_out = tuple(sorted(scene.broken))
         self.units = Groups(self.parts)  # parts that are bought as one
@@ -278,7 +278,7 @@ class _Taking:
             return None
         parts = [name for atom in left for name in atom]
         for pose in folded(self.scene, self.mechanism, parts, base):
-            ways = Ways(self.scene, {**self.poses, **pose.poses}, self.forced)
+            ways = Ways(self.scene, {**self.poses, **pose.poses}, self.forced, self.ways.outlines)
             found = self._removable(left, base, ways, {pose.joint: pose.value})
             if found is not None and self.proof(pose.mechanism, pose.joint):
                 return replace(found, opened=True)

@@ -8,7 +8,7 @@ The travel of a pair depends on no third part, so each is computed once, whateve
 from __future__ import annotations
 
 import math
-from collections import Counter
+from collections import Counter, OrderedDict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
@@ -17,15 +17,17 @@ import numpy as np
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
+from articad.interference.body import Body
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
-from articad.interference.surface import PlacedTriangles
+from articad.interference.surface import inset_vertices
 from articad.interference.travel import Outline, first_contacts, material_met, meets
 
-__all__ = ["CLEAR_MM", "Halt", "WayOut", "Ways", "ways_of", "ways_out"]
+__all__ = ["CLEAR_MM", "Halt", "LastOutlines", "WayOut", "Ways", "ways_of", "ways_out"]
 
 CLEAR_MM: Final = 1.0  # a part this far beyond everything else has left
 SAME_DIRECTION: Final = 1e-6  # length of the difference of unit vectors
+_KEPT_TRIANGLES: Final = 1 << 20  # of all outlines that are kept, of 121 bytes each: 127 MB
 
 
 class Halt(NamedTuple):
@@ -78,6 +80,39 @@ _Key = tuple[str, str, int, tuple[float, ...]]
 """Two parts, the number of a direction, and the offset of the first one [mm], empty where it is at its place."""
 
 
+class LastOutlines:
+    """Parts as seen along directions, at any poses; only the outlines that were used last are kept.
+
+    One direction takes 29 MB for the 240 000 triangles of a Stewart platform, and a search asks for a hundred at each of 19 poses.
+
+    Args:
+        bodies: The parts by name.
+        most: How many triangles all outlines that are kept may have.
+    """
+
+    def __init__(self, bodies: Mapping[str, Body], most: int = _KEPT_TRIANGLES) -> None:
+        self._bodies, self._most = bodies, most
+        self._vertices: dict[tuple[str, float], FloatArray] = {}
+        self._kept: OrderedDict[tuple[str, float, bytes, bytes], Outline] = OrderedDict()
+        self.triangles = 0  # of all that are kept
+
+    def of(self, part: str, depth: float, pose: SE3, direction: FloatArray) -> Outline:
+        """Return a part, its surface moved inwards by a depth [mm], at `T_ground_part` as seen along a unit vector `(3,)`."""
+        key = (part, depth, pose.matrix.tobytes(), direction.tobytes())
+        if key in self._kept:
+            self._kept.move_to_end(key)
+            return self._kept[key]
+        mesh = self._bodies[part].mesh
+        if (part, depth) not in self._vertices:
+            self._vertices[part, depth] = inset_vertices(mesh, depth)
+        found = Outline.of(np.asarray(pose.apply(self._vertices[part, depth]))[mesh.triangles], direction)
+        self._kept[key] = found
+        self.triangles += len(found.height)
+        while self.triangles > self._most:
+            self.triangles -= len(self._kept.popitem(last=False)[1].height)
+        return found
+
+
 class Ways:
     """The straight ways of the parts of a scene at one pose.
 
@@ -85,13 +120,19 @@ class Ways:
         scene: Bodies and relations.
         poses: `T_ground_part` of all parts.
         permitted: Pairs of parts that do not stop each other: they snap, are pressed or screwed together.
+        outlines: Of the same scene, shared with its ways at other poses.
     """
 
-    def __init__(self, scene: Scene, poses: Mapping[str, SE3], permitted: Iterable[frozenset[str]] = ()) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        poses: Mapping[str, SE3],
+        permitted: Iterable[frozenset[str]] = (),
+        outlines: LastOutlines | None = None,
+    ) -> None:
         self.scene, self.poses, self.permitted = scene, poses, frozenset(permitted)
         self.parts = tuple(name for name in scene.bodies if name not in scene.broken and name in poses)
-        self._placed = PlacedTriangles(scene.bodies, poses)
-        self._outlines: dict[tuple[str, float, int], Outline] = {}
+        self.outlines = outlines or LastOutlines(scene.bodies)
         self._directions: list[FloatArray] = []
         self._known: dict[_Key, tuple[float, float]] = {}
         self._meets: dict[_Key, tuple[bool, bool]] = {}
@@ -214,10 +255,7 @@ class Ways:
         return moved, self._outline(b, 0.0, at)
 
     def _outline(self, part: str, depth: float, at: int) -> Outline:
-        key = (part, depth, at)
-        if key not in self._outlines:
-            self._outlines[key] = Outline.of(self._placed.triangles(part, depth), self._directions[at])
-        return self._outlines[key]
+        return self.outlines.of(part, depth, self.poses[part], self._directions[at])
 
     def _index(self, direction: FloatArray) -> tuple[int, int]:
         """Return the number of a direction or of its opposite, and the sign."""

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import manifold3d as m3
 import numpy as np
@@ -215,6 +216,23 @@ def test_a_drawer_that_a_door_bars_goes_in_while_the_door_is_open() -> None:
     order = ordered(solids, joints, "case", OtherPose({"hinge": 1.5}, opened))
     assert order.ok
     assert names(order) in ([("case",), ("thing",), ("door",)], [("case",), ("door",), ("thing",)])
+
+
+def test_a_search_keeps_the_outlines_of_all_its_poses_in_one_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Ways] = []
+    first = Ways.__init__
+
+    def noted(self: Ways, *args: Any, **options: Any) -> None:
+        first(self, *args, **options)
+        made.append(self)
+
+    monkeypatch.setattr(Ways, "__init__", noted)
+    solids = {"box": BOX + LID, "thing": INSIDE}
+    poses = dict.fromkeys(solids, IDENTITY)
+    others = [OtherPose({"slide": z}, {**poses, "thing": SE3.from_translation((0, 0, z))}) for z in (1.0, 2.0)]
+    assert not ordered(solids, [fixed("b", "box", "thing")], "box", *others).ok
+    assert len(made) == 3
+    assert len({id(ways.outlines) for ways in made}) == 1
 
 
 def test_a_part_that_only_comes_from_below_is_put_in_place_with_the_assembly_turned_over() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from articad.connectors import SE3
 from articad.disassembly.order import assembly_order
-from articad.disassembly.ways import WayOut, Ways, ways_out
+from articad.disassembly.ways import LastOutlines, WayOut, Ways, ways_out
 from articad.geometry import TriMesh, box, cylinder
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint
@@ -143,3 +143,25 @@ def test_free_lets_pass_what_is_permitted() -> None:
     east = np.array([1.0, 0, 0])
     assert not Ways(scene_of(bars), rest(bars)).free(["a"], ["b"], east)
     assert Ways(scene_of(bars), rest(bars), [frozenset("ab")]).free(["a"], ["b"], east)
+
+
+def test_outlines_that_are_kept_have_no_more_triangles_than_stated() -> None:
+    meshes = {"block": block_with_bore(40, 10, 5.1, 48), "shaft": cylinder(5, 30, 48)}
+    scene, most = scene_of(meshes), 3 * max(len(mesh.triangles) for mesh in meshes.values())
+    few, all_of_them = (Ways(scene, rest(meshes), outlines=LastOutlines(scene.bodies, number)) for number in (most, 1 << 20))
+    for seed in (3, 4, 3):
+        for row in np.random.default_rng(seed).normal(size=(3, 3)):
+            way = row / np.linalg.norm(row)
+            assert few.travel("block", "shaft", way) == all_of_them.travel("block", "shaft", way)
+            assert few.outlines.triangles <= most
+    assert most < all_of_them.outlines.triangles == 6 * sum(len(mesh.triangles) for mesh in meshes.values())
+
+
+def test_ways_at_other_poses_take_outlines_of_parts_that_did_not_move_from_the_first() -> None:
+    meshes = {"block": block_with_bore(40, 10, 5.1, 48), "shaft": cylinder(5, 30, 48)}
+    scene, up = scene_of(meshes), np.array([0.0, 0, 1])
+    first = Ways(scene, rest(meshes))
+    first.travel("block", "shaft", up)
+    assert first.outlines.triangles == sum(len(mesh.triangles) for mesh in meshes.values())
+    Ways(scene, {**rest(meshes), "shaft": at(z=3)}, outlines=first.outlines).travel("block", "shaft", up)
+    assert first.outlines.triangles == len(meshes["block"].triangles) + 2 * len(meshes["shaft"].triangles)
