@@ -229,6 +229,30 @@ def test_a_regular_file_is_replaced_whole_and_its_other_name_keeps_its_content(t
     assert ((tmp_path / "a").read_bytes(), (tmp_path / "b").read_bytes()) == (b"new", MINE)
 
 
+def test_files_are_on_the_disk_before_they_take_their_names_and_each_folder_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    synced, unsynced = [], []
+    sync, replace = os.fsync, Path.replace
+
+    def told_sync(handle: int) -> None:
+        synced.append(Path(f"/proc/self/fd/{handle}").readlink())
+        sync(handle)
+
+    def told_replace(self: Path, target: Path) -> Path:
+        if self not in synced:
+            unsynced.append(target)
+        return replace(self, target)
+
+    monkeypatch.setattr(os, "fsync", told_sync)
+    monkeypatch.setattr(Path, "replace", told_replace)
+    files = {tmp_path / folder / str(number): bytes([number]) for folder in "ab" for number in range(100)}
+    scratch.write_durably(files)
+    assert {path: path.read_bytes() for path in files} == files
+    assert unsynced == []
+    assert [path for path in synced if path.is_dir()].count(tmp_path / "a") == 1
+    assert len(synced) == len(files) + 2
+    assert sorted(tmp_path.glob("*/*")) == sorted(files)
+
+
 # ---------------------------------------------------------------------- every command that writes
 
 ROBOT = """<robot name="r"><link name="a"><visual><geometry><box size=".1 .1 .1"/></geometry></visual>

@@ -103,14 +103,14 @@ def test_a_part_that_the_plan_dropped_is_put_aside_and_never_lost(tmp_path: Path
 def test_a_part_counts_only_once_it_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with Run.create(request(), out=tmp_path / "r") as run:
         run.save_part("lid", record={"digest": "1"}, script=b"one")
-        write = Run._write
+        replace = Path.replace
 
-        def dies_at_the_mesh(self: Run, name: str, content: bytes) -> None:
-            if name.endswith(".stl"):
+        def dies_at_the_mesh(self: Path, target: Path) -> Path:
+            if target.name.endswith(".stl"):
                 raise KeyboardInterrupt
-            write(self, name, content)
+            return replace(self, target)
 
-        monkeypatch.setattr(Run, "_write", dies_at_the_mesh)
+        monkeypatch.setattr(Path, "replace", dies_at_the_mesh)
         with pytest.raises(KeyboardInterrupt):
             run.save_part("lid", record={"digest": "2"}, script=b"two", stl=b"mesh")
         assert run.part("lid") is None

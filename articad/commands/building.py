@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from articad.commands.steps import assembled, loaded, reported, stage
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
+    from articad.findings import Findings
     from articad.runs.run import Run
 
 
@@ -63,12 +65,16 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
                 with stage(tell, "proof of motion"):
                     record_certificate(run, assembly.certify())
             formats = () if stops else FORMATS if options.complete else options.formats
-            for name in formats:
-                with stage(tell, f"export {name}"):
-                    record_export(run, assembly, name)
-            for name in [name for name in formats if name in STANDING and checks.ok]:
-                with stage(tell, f"simulation of {name} at rest"):
-                    record_objections(run, name, stands(assembly, Path(run.exports()[name]["main"])))
+            with ThreadPoolExecutor() as pool:  # a simulation waits for a process of its own
+                tried: dict[str, Future[Findings]] = {}
+                for name in formats:
+                    with stage(tell, f"export {name}"):
+                        main = Path(record_export(run, assembly, name)["main"])
+                    if name in STANDING and checks.ok:
+                        tried[name] = pool.submit(stands, assembly, main)
+                for name, found in tried.items():
+                    with stage(tell, f"simulation of {name} at rest"):
+                        record_objections(run, name, found.result())
             if pictures:
                 with stage(tell, "page"):
                     record_page(run, assembly)
