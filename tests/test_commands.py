@@ -161,6 +161,7 @@ def test_a_complete_build_certifies_and_writes_every_format_in_few_lines(
     assert set(exports) == set(FORMATS)
     told = next(line for line in lines if line.startswith("Files in "))
     assert all(str(Path(export["main"]).relative_to(run.path)) in told for export in exports.values())
+    assert told.endswith("(urdf and mjcf: loaded and held at rest in MuJoCo)")
     assert any(line.startswith("Motion certified") for line in lines)
     assert any(line.endswith("accepted by its checker.") for line in lines)
     assert not (tmp_path / "run" / "report.html").exists()

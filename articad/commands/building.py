@@ -65,8 +65,8 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
                 with stage(tell, "proof of motion"):
                     record_certificate(run, assembly.certify())
             formats = () if stops else FORMATS if options.complete else options.formats
+            tried: dict[str, Future[Findings]] = {}
             with ThreadPoolExecutor() as pool:  # a simulation waits for a process of its own
-                tried: dict[str, Future[Findings]] = {}
                 for name in formats:
                     with stage(tell, f"export {name}"):
                         main = Path(record_export(run, assembly, name)["main"])
@@ -82,7 +82,7 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
             report = run_report(run)
             if not stops:
                 report |= _verified(run, report, terminal)
-            print_complete(report, terminal)
+            print_complete(report, terminal, stood=[name for name, found in tried.items() if not found.result()])
             return report
         report = reported(run, terminal)
         if pictures:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -51,8 +51,14 @@ def print_run(report: Report, terminal: Terminal) -> None:
         terminal.say(f"Open: articad show {shlex.quote(run)}")
 
 
-def print_complete(report: Report, terminal: Terminal) -> None:
-    """Print a complete build in at most 15 lines: what holds, the findings that matter most, and where the files are."""
+def print_complete(report: Report, terminal: Terminal, *, stood: Sequence[str] = ()) -> None:
+    """Print a complete build in at most 15 lines: what holds, the findings that matter most, and where the files are.
+
+    Args:
+        report: `articad.build/1`, with `verification`.
+        terminal: Where it is printed.
+        stood: Formats whose files were loaded and held at rest in MuJoCo, without an objection.
+    """
     from articad.interference.statements import statements
 
     assembly, run = report["assembly"], Path(report["run"])
@@ -77,7 +83,10 @@ def print_complete(report: Report, terminal: Terminal) -> None:
             f"Certificate: {run / 'certificate.json'}, {f'refuted by its checker: {faults[0]}' if faults else 'accepted by its checker'}."
         )
     files = [str(Path(export["main"]).relative_to(run)) for export in report["exports"].values()]
-    terminal.say(f"Files in {run}: {', '.join(files)}" if files else "Nothing is certified or exported before the checks at rest hold.")
+    held = f" ({' and '.join(stood)}: loaded and held at rest in MuJoCo)" if stood else ""
+    terminal.say(
+        f"Files in {run}: {', '.join(files)}{held}" if files else "Nothing is certified or exported before the checks at rest hold."
+    )
 
 
 def print_statements(
