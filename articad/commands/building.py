@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +28,8 @@ if TYPE_CHECKING:
     *BUILD_ARGUMENTS,
 )
 def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from concurrent.futures import Future, ThreadPoolExecutor
+
     from articad.commands.steps import build_cache, draw, plan_in
     from articad.commands.summaries import print_complete
     from articad.runs.record import (
