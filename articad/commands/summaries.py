@@ -163,7 +163,7 @@ def print_support(report: Report, terminal: Terminal) -> None:
 
 def print_order(report: Report, terminal: Terminal) -> None:
     """Print the steps of an order of assembly, each with its path."""
-    from articad.disassembly.steps import turned_over
+    from articad.disassembly.steps import beside_words, turned_over
 
     for step in report["steps"]:
         what = f"{step['subassembly']} ({', '.join(step['parts'])})" if step["subassembly"] else ", ".join(step["parts"])
@@ -173,6 +173,10 @@ def print_order(report: Report, terminal: Terminal) -> None:
         path = ", then ".join(f"{_way(move['direction'])} by {move['length_mm']:.4g} mm" for move in step["moves"])
         forced = "".join(f", {a} and {b} by {how}" for a, b, how in step["permitted"])
         forced += turned_over(step["at"]) if step["opened"] else ""
+        if step["slides"]:
+            what += ", from beside its place,"
+        elif step["parts"][0] in step["beside"]:
+            path += f", to {beside_words(step['beside'][step['parts'][0]])}"
         terminal.say(f"{step['number']:3}. {step['assembly']}: {what} {path}; {step['strength']}{forced}")
     for blocked in report["blocked"]:
         terminal.say(f"No order puts these together: {', '.join(blocked['parts'])}.")

@@ -110,15 +110,18 @@ def folded(scene: Scene, mechanism: Mechanism, parts: Collection[str], base: str
 
 
 def step_poses(mechanism: Mechanism, step: AssemblyStep, base: str) -> dict[str, SE3]:
-    """Return `T_ground_part` of all parts as they are in a step of an order.
+    """Return `T_ground_part` of all parts as they are when a step of an order is done.
 
     Args:
         mechanism: The whole.
         step: The step; where a loop is still open, only what is there so far is moved.
         base: The part that everything is put onto.
     """
-    if not step.opened:
-        return poses_at(mechanism, step.at)
+    found = _opened_poses(mechanism, step, base) if step.opened else poses_at(mechanism, step.at)
+    return found | {name: SE3.from_translation(offset) @ found[name] for name, offset in step.beside.items()}
+
+
+def _opened_poses(mechanism: Mechanism, step: AssemblyStep, base: str) -> dict[str, SE3]:
     found = {name: mechanism.at_rest[index] for index, name in enumerate(mechanism.parts)}
     for joint, value in step.at.items():
         whole = remaining(mechanism, (*step.onto, *step.parts), base if base in step.onto else step.onto[0], joint)

@@ -2,7 +2,9 @@
 
 Parts that block each other along a direction form a graph (Wilson and Latombe 1994, directional blocking graphs). A set that blocks itself
 only, a strongly connected component from which no edge leaves, can be removed in that direction as a whole. So sub-assemblies need no
-search: they are components of more than one part. Each removal is proven all along its path by `Ways`.
+search: they are components of more than one part. If nothing leaves, one or two sets move aside as far as others let them, stay there, and
+the search goes on from there: read backwards, they wait beside their places until others are in. Each removal, and each move aside, is proven
+all along its path by `Ways`.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from articad.connectors.se3 import SE3
 from articad.disassembly.opened import Proof, folded
 from articad.disassembly.poses import OtherPose
 from articad.disassembly.steps import AssemblyOrder, AssemblyStep, Blocked, Move, StopRow, Vector3
-from articad.disassembly.ways import Ways, distinct, ways_of
+from articad.disassembly.ways import CLEAR_MM, Ways, distinct, ways_of
 from articad.geometry.faces import faces_of
 from articad.interference.relations import Groups
 from articad.interference.scene import Scene
@@ -44,6 +46,8 @@ _NEARER: Final = 0.5  # of that way: only a way as short replaces it
 _GENTLER: Final = 0.9  # of the material that is pushed through others: only a way with less replaces it
 _FLAT: Final = 1e-6  # of a unit vector's height
 _LEAST_MM: Final = 0.3  # of the travel in a first direction: less is play
+_ASIDE: Final = 2  # atoms that move aside for others
+_MOST_ASIDE: Final = 6  # moves aside that are tried of each state, the farthest
 
 Atom = tuple[str, ...]  # parts that stay together for now
 
@@ -78,8 +82,28 @@ def assembly_order(
 
 
 @dataclass(frozen=True)
+class _Aside:
+    """An atom that moves aside and stays there.
+
+    Attributes:
+        atom: The atom.
+        offset: Of where it stays, from its place `(3,)` [mm].
+        ways: All parts before it moves.
+    """
+
+    atom: Atom
+    offset: FloatArray
+    ways: Ways = field(compare=False)
+
+    @property
+    def after(self) -> Ways:
+        """All parts after it has moved."""
+        return self.ways.beside({**self.ways.offsets, **dict.fromkeys(self.atom, self.offset)})
+
+
+@dataclass(frozen=True)
 class _Removal:
-    """A set of atoms that leaves along a direction, after a first move if there is one."""
+    """A set of atoms that leaves along a direction, after a first move if there is one, and after others have moved aside."""
 
     atoms: tuple[Atom, ...]
     way: FloatArray
@@ -88,6 +112,7 @@ class _Removal:
     first: FloatArray
     key: tuple[float, ...] = field(compare=False)
     opened: bool = False
+    aside: tuple[_Aside, ...] = ()
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -148,20 +173,46 @@ class _Taking:
 
     def _steps(self, atoms: Sequence[Atom], base: str, name: str) -> Iterator[AssemblyStep]:
         """Yield the steps that put atoms together."""
-        left, removed = list(atoms), []
+        left, removed, ways = self._taken_apart(atoms, base)
+        placed = [part for atom in left for part in atom]
+        yield from self._start(left, placed, base, name, ways)
+        named: dict[Atom, str] = {}
+        for removal in reversed(removed):
+            if isinstance(removal, _Aside):
+                yield self._back(removal, placed, name, named.get(removal.atom))
+                continue
+            moving, own = removal.parts, None
+            if len(moving) > 1:
+                first = min(moving, key=lambda part: (self.hops.get(part, len(self.parts)), self.declared[part]))
+                own = named[moving] = f"{first}_assembly"
+                inner = removal.atoms if len(removal.atoms) > 1 else self._split(moving)
+                yield from self._steps(inner, first, own)
+            yield self._step(removal, placed, name, own)
+            placed += moving
+
+    def _taken_apart(self, atoms: Sequence[Atom], base: str) -> tuple[list[Atom], list[_Removal | _Aside], Ways]:
+        """Return what of some atoms stays, what was done to take the others away, and all parts as they stand then."""
+        left, ways = list(atoms), self.ways
+        removed: list[_Removal | _Aside] = []
         while len(left) > 1:
-            found = self._removable(left, base) or self._elsewhere(left, base) or self._in_two_moves(left, base) or self._folded(left, base)
+            if not any(part in ways.offsets for atom in left for part in atom):
+                ways = self.ways
+            found = self._next(left, base, ways)
             if found is None:
                 apart = self._split(part for atom in left for part in atom)  # perhaps only single parts can leave
                 if len(apart) == len(left):
-                    self._report(left)
+                    self._report(left, ways)
                     break
                 left = apart
                 continue
             found = self._nearer(found, [part for atom in left if atom not in found.atoms for part in atom])
-            removed.append(found)
+            removed += [*found.aside, found]
+            ways = found.aside[-1].after if found.aside else ways
             left = [atom for atom in left if atom not in found.atoms]
-        placed = [part for atom in left for part in atom]
+        return left, removed, ways
+
+    def _start(self, left: Sequence[Atom], placed: Sequence[str], base: str, name: str, ways: Ways) -> Iterator[AssemblyStep]:
+        """Yield the steps that lay down what all else is put onto."""
         if len(left) == 1 and len(self._split(placed)) > 1:  # the base is itself several parts
             yield from self._steps(self._split(placed), base, name)
         elif len(left) == 1 and len(placed) > 1:
@@ -175,18 +226,17 @@ class _Taking:
                 number=0, assembly=name, parts=tuple(placed), subassembly=whole, onto=(), moves=(), strength="permitted", permitted=bought
             )
         elif len(placed) > 1:
-            yield AssemblyStep(number=0, assembly=name, parts=tuple(placed), subassembly=f"{base}_and_others", onto=(), moves=())
+            yield AssemblyStep(
+                number=0,
+                assembly=name,
+                parts=tuple(placed),
+                subassembly=f"{base}_and_others",
+                onto=(),
+                moves=(),
+                beside=_beside(ways, placed),
+            )
         else:
             yield AssemblyStep(number=0, assembly=name, parts=tuple(placed), onto=(), moves=())
-        for removal in reversed(removed):
-            moving, own = removal.parts, None
-            if len(moving) > 1:
-                first = min(moving, key=lambda part: (self.hops.get(part, len(self.parts)), self.declared[part]))
-                own = f"{first}_assembly"
-                inner = removal.atoms if len(removal.atoms) > 1 else self._split(moving)
-                yield from self._steps(inner, first, own)
-            yield self._step(removal, placed, name, own)
-            placed += moving
 
     def _split(self, parts: Iterable[str]) -> list[Atom]:
         """Return parts one by one, but for those that are bought as one."""
@@ -201,6 +251,7 @@ class _Taking:
         joints = [joint for joint in joints if {joint.parent, joint.child} <= {*moving, *placed}]
         partners = [part for part in placed if any(part in (joint.parent, joint.child) for joint in joints)]
         ways, way, first = removal.ways, removal.way, removal.first
+        joints = [joint for joint in joints if not ways.apart(joint.parent, joint.child).any()]
         forced = tuple(
             (a, b, self.forced[frozenset((a, b))])
             for a in moving
@@ -226,6 +277,7 @@ class _Taking:
             onto=tuple(placed),
             moves=tuple(moves),
             at=removal.at,
+            beside=_beside(ways, [*moving, *placed]),
             opened=removal.opened,
             joints=tuple(joint.name for joint in joints),
             fastened={joint.name: self.fastenings[joint.name] for joint in joints if joint.name in self.fastenings},
@@ -234,7 +286,73 @@ class _Taking:
             forced_mm=round(self._overlap(moving, placed, way, ways), _ROUNDED) if forced and not first.any() else 0.0,
         )
 
+    def _back(self, aside: _Aside, placed: Sequence[str], name: str, own: str | None) -> AssemblyStep:
+        """Return the step that moves parts, which wait beside their place, to it."""
+        moving, staying, way = aside.atom, [part for part in placed if part not in aside.atom], _unit(aside.offset)
+        length, after = float(np.linalg.norm(aside.offset)), aside.after
+        joints = [joint for joint in self.joints if (joint.parent in moving) != (joint.child in moving)]
+        joints = [joint for joint in joints if {joint.parent, joint.child} <= {*moving, *staying}]
+        joints = [joint for joint in joints if after.apart(joint.parent, joint.child).any()]
+        joints = [joint for joint in joints if not aside.ways.apart(joint.parent, joint.child).any()]
+        pairs = [(a, b) for a in moving for b in staying if frozenset((a, b)) in self.forced and aside.ways.travel(a, b, way) < length]
+        return AssemblyStep(
+            number=0,
+            assembly=name,
+            parts=moving,
+            subassembly=own,
+            onto=tuple(staying),
+            moves=(Move(direction=_vector(-way), length_mm=round(length, _ROUNDED), apart_mm=round(length, _ROUNDED)),),
+            slides=True,
+            beside=_beside(aside.ways, placed),
+            joints=tuple(joint.name for joint in joints),
+            fastened={joint.name: self.fastenings[joint.name] for joint in joints if joint.name in self.fastenings},
+            strength="permitted" if pairs else "proven",
+            permitted=tuple((a, b, self.forced[frozenset((a, b))]) for a, b in pairs),
+        )
+
     # ------------------------------------------------------------------ what can be removed
+
+    def _next(self, left: Sequence[Atom], base: str, ways: Ways) -> _Removal | None:
+        """Return what leaves next, or None. While parts are aside, the others stay at rest."""
+        if ways.offsets:
+            return self._removable(left, base, ways) or self._in_two_moves(left, base, ways) or self._after_others(left, base, ways)
+        return (
+            self._removable(left, base)
+            or self._elsewhere(left, base)
+            or self._in_two_moves(left, base, ways)
+            or self._folded(left, base)
+            or self._after_others(left, base, ways)
+        )
+
+    def _after_others(self, left: Sequence[Atom], base: str, ways: Ways) -> _Removal | None:
+        """Return what can leave when one or two atoms have moved aside, each in a straight line as far as others let it."""
+        states: list[tuple[_Aside, ...]] = [()]
+        for _ in range(_ASIDE):
+            further: dict[frozenset[tuple[float | str, ...]], tuple[_Aside, ...]] = {}
+            for state in states:
+                for aside in self._asides(left, base, state[-1].after if state else ways):
+                    chosen = (*state, aside)
+                    further.setdefault(frozenset((*each.atom, *each.offset.tolist()) for each in chosen), chosen)
+            states = list(further.values())
+            for state in states:
+                after = state[-1].after
+                found = self._removable(left, base, after) or self._in_two_moves(left, base, after)
+                if found is not None:
+                    return replace(found, aside=state)
+        return None
+
+    def _asides(self, left: Sequence[Atom], base: str, ways: Ways) -> list[_Aside]:
+        """Return the moves aside of atoms that are at their places, the farthest first."""
+        found: list[tuple[float, _Aside]] = []
+        for atom in left:
+            if base in atom or any(part in ways.offsets for part in atom):
+                continue
+            rest = [name for other in left if other != atom for name in other]
+            for way in distinct([*np.eye(3), *self._joint_axes(atom, ways)]):
+                travel = ways.stop(atom, rest, way).travel
+                if CLEAR_MM < travel < np.inf:
+                    found.append((travel, _Aside(atom, _STEPS[0] * travel * way, ways)))
+        return [aside for _, aside in sorted(found, key=lambda row: -row[0])[:_MOST_ASIDE]]
 
     def _removable(
         self, left: Sequence[Atom], base: str, ways: Ways | None = None, at: Mapping[str, float] | None = None
@@ -256,6 +374,9 @@ class _Taking:
                 break
             for way in directions:
                 for atoms, direction in self._leaving(left, base, way, ways):
+                    moving = [name for atom in atoms for name in atom]
+                    if any(ways.apart(moving[0], name).any() for name in moving):
+                        continue  # their sub-assembly is made at rest
                     key = self._key(atoms, left, direction, rank, self._met(atoms, left, direction, ways))
                     found = _Removal(atoms, direction, ways, dict(at or {}), np.zeros(3), key)
                     if best is None or found.key < best.key:
@@ -331,28 +452,28 @@ class _Taking:
         pairs = [(a, b) for a in moving for b in staying if frozenset((a, b)) in self.forced and ways.meets(a, b, way)]
         return max((far - ways.travel(a, b, -way, far * way) for a, b in pairs), default=0.0)
 
-    def _in_two_moves(self, left: Sequence[Atom], base: str) -> _Removal | None:
+    def _in_two_moves(self, left: Sequence[Atom], base: str, ways: Ways) -> _Removal | None:
         """Return an atom that leaves after a first move in another direction: out of a keyhole, over a lip."""
         for atom in sorted((atom for atom in left if base not in atom), key=len):
             rest = [name for other in left if other != atom for name in other]
-            directions = distinct([*np.eye(3), *self._joint_axes(atom, self.ways)])
+            directions = distinct([*np.eye(3), *self._joint_axes(atom, ways)])
             for first in directions:
-                travel = self.ways.stop(atom, rest, first).travel
+                travel = ways.stop(atom, rest, first).travel
                 if not _LEAST_MM < travel < np.inf:
                     continue
                 for share in _STEPS:
                     moved = share * travel * first
                     for way in directions:
-                        if abs(float(way @ first)) < 1 - _PARALLEL and self.ways.free(atom, rest, way, offset=moved):
-                            moved = self._shortened(atom, rest, moved, way)
-                            return _Removal((atom,), way, self.ways, {}, moved, self._key((atom,), left, way, 0))
+                        if abs(float(way @ first)) < 1 - _PARALLEL and ways.free(atom, rest, way, offset=moved):
+                            moved = self._shortened(atom, rest, moved, way, ways)
+                            return _Removal((atom,), way, ways, {}, moved, self._key((atom,), left, way, 0))
         return None
 
-    def _shortened(self, atom: Atom, rest: Sequence[str], moved: FloatArray, way: FloatArray) -> FloatArray:
+    def _shortened(self, atom: Atom, rest: Sequence[str], moved: FloatArray, way: FloatArray, ways: Ways) -> FloatArray:
         """Return a first move, halved as often as the second one stays free after it."""
         for _ in range(_HALVINGS):
             half = moved / 2
-            if float(np.linalg.norm(half)) < _LEAST_MM or not self.ways.free(atom, rest, way, offset=half):
+            if float(np.linalg.norm(half)) < _LEAST_MM or not ways.free(atom, rest, way, offset=half):
                 break
             moved = half
         return moved
@@ -439,14 +560,14 @@ class _Taking:
 
     # ------------------------------------------------------------------ what cannot
 
-    def _report(self, left: Sequence[Atom]) -> None:
+    def _report(self, left: Sequence[Atom], ways: Ways) -> None:
         """Record parts that hold each other, with what stops each."""
         names = tuple(name for atom in left for name in atom)
         rows: list[StopRow] = []
         for name in names:
             own: list[StopRow] = []
-            for way in distinct([*np.eye(3), *ways_of(self.scene, self.ways.poses, name)]):
-                stop = self.ways.stop([name], [other for other in names if other != name], way)
+            for way in distinct([*np.eye(3), *ways_of(self.scene, ways.poses, name)]):
+                stop = ways.stop([name], [other for other in names if other != name], way)
                 if stop.by is not None:
                     own.append(StopRow(part=name, direction=_vector(way), travel_mm=round(stop.travel, _ROUNDED), by=stop.by))
             rows += sorted(own, key=lambda row: -row.travel_mm)
@@ -467,6 +588,17 @@ def _new(axes: Iterable[FloatArray], known: Sequence[FloatArray]) -> FloatArray:
     """Return axes and their opposites, without those that are known."""
     rows = [axis for axis in distinct(list(axes)) if not any(min(np.linalg.norm(axis - k), np.linalg.norm(axis + k)) < 1e-6 for k in known)]
     return np.array(rows).reshape(-1, 3)
+
+
+def _beside(ways: Ways, parts: Iterable[str]) -> dict[str, Vector3]:
+    """Return by how much some parts are beside their places [mm], those that are."""
+    inside = set(parts)
+    return {name: _offset(offset) for name, offset in ways.offsets.items() if name in inside and offset.any()}
+
+
+def _offset(offset: FloatArray) -> Vector3:
+    x, y, z = (round(float(value), _ROUNDED) + 0.0 for value in offset)
+    return (x, y, z)
 
 
 def _unit(way: FloatArray) -> FloatArray:

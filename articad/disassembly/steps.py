@@ -13,7 +13,7 @@ from articad.aliases import Fastening
 from articad.arrays import FloatArray
 from articad.findings import Finding, Findings
 
-__all__ = ["AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow", "shown_path", "turned_over", "words_of"]
+__all__ = ["AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow", "beside_words", "shown_path", "turned_over", "words_of"]
 
 _SHOWN: Final = (0.14, 0.75)  # of the size of what is shown: least and largest distance of new parts from their place
 _FROM: Final = {
@@ -23,6 +23,9 @@ _FROM: Final = {
 _TOWARDS: Final = {
     (0, False): "the left", (0, True): "the right", (1, False): "the front", (1, True): "the back", (2, False): "the bottom",
     (2, True): "the top",
+}  # fmt: skip
+_BESIDE: Final = {
+    (0, False): "left of", (0, True): "right of", (1, False): "in front of", (1, True): "behind", (2, False): "below", (2, True): "above",
 }  # fmt: skip
 
 _UPWARDS: Final = 0.7  # vertical part of a unit vector, from which a part comes from below
@@ -68,8 +71,10 @@ class AssemblyStep(_Form):
         onto: The parts that are in place.
         moves: The path; empty if nothing is in place yet.
         at: Values of the drivers at which the step is done, such as a door that stands open [rad, mm]; the others, and all if empty, at rest.
+        slides: Whether the parts are there already, beside their places, and are moved to them.
+        beside: By how much parts are beside their places when the step is done [mm], in the ground frame: they wait there until others are in.
         opened: Whether `at` is the value of a joint of what is there so far, which moves farther than in the whole product because a loop is still open.
-        joints: Joints between the parts and those in place.
+        joints: Joints between the parts and those in place that this step makes.
         fastened: How those of them are held together whose fastening is stated.
         strength: "proven": free of collision all along the path; "permitted": so but for pairs that are fastened by force, such as a snap, or bought as one.
         permitted: These pairs, with their fastening.
@@ -83,6 +88,8 @@ class AssemblyStep(_Form):
     onto: tuple[str, ...]
     moves: tuple[Move, ...]
     at: dict[str, float] = Field(default_factory=dict)
+    slides: bool = False
+    beside: dict[str, Vector3] = Field(default_factory=dict)
     opened: bool = False
     joints: tuple[str, ...] = ()
     fastened: dict[str, Fastening] = Field(default_factory=dict)
@@ -103,7 +110,8 @@ def shown_path(step: AssemblyStep, size: float) -> FloatArray:
     """
     points = [np.zeros(3)]
     for index, move in reversed(list(enumerate(step.moves))):
-        far = min(max(move.apart_mm, _SHOWN[0] * size), _SHOWN[1] * size) if index == 0 else move.length_mm
+        outside = index == 0 and not step.slides
+        far = min(max(move.apart_mm, _SHOWN[0] * size), _SHOWN[1] * size) if outside else move.length_mm
         points.append(points[-1] - far * np.array(move.direction))
     return np.array(points[::-1])
 
@@ -115,7 +123,24 @@ def words_of(step: AssemblyStep) -> str:
         return f"Start with {what}."
     ways = [_way(move) for move in step.moves]
     over = ", with the assembly turned over or held up" if any(move.direction[2] > _UPWARDS for move in step.moves) else ""
-    return f"Put {what} in place: {', then '.join(ways)}{over}{turned_over(step.at) if step.opened else ''}."
+    turned = f"{over}{turned_over(step.at) if step.opened else ''}"
+    if step.slides:
+        return f"Move {what} to its place: {', then '.join(ways)}{turned}{_waiting(step)}."
+    where = beside_words(step.beside[step.parts[0]]) if step.parts[0] in step.beside else "in place"
+    return f"Put {what} {where}: {', then '.join(ways)}{turned}{_waiting(step)}."
+
+
+def beside_words(offset: Vector3) -> str:
+    """Return where a part is that an offset [mm] takes from its place: "24.3 mm above its place"."""
+    along = [axis for axis in range(3) if abs(offset[axis]) > _AXIS]
+    where = _BESIDE[along[0], offset[along[0]] > 0] if len(along) == 1 else "from"
+    return f"{math.hypot(*offset):.3g} mm {where} its place"
+
+
+def _waiting(step: AssemblyStep) -> str:
+    """Return which of the parts that are there wait beside their places, as the end of a sentence."""
+    names = [name for name in step.beside if name in step.onto]
+    return f", with {' and '.join(names)} still beside {'its place' if len(names) == 1 else 'their places'}" if names else ""
 
 
 def turned_over(at: Mapping[str, float]) -> str:

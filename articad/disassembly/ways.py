@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import Counter, OrderedDict
 from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
@@ -133,11 +134,30 @@ class Ways:
         self.scene, self.poses, self.permitted = scene, poses, frozenset(permitted)
         self.parts = tuple(name for name in scene.bodies if name not in scene.broken and name in poses)
         self.outlines = outlines or LastOutlines(scene.bodies)
+        self.offsets: Mapping[str, FloatArray] = {}
+        self._in_place = poses
         self._directions: list[FloatArray] = []
         self._known: dict[_Key, tuple[float, float]] = {}
         self._meets: dict[_Key, tuple[bool, bool]] = {}
-        self._met: dict[tuple[str, str, int, int], float] = {}
+        self._met: dict[tuple[str, str, int, int, tuple[float, ...]], float] = {}
         self._stops: Counter[tuple[str, str]] = Counter()
+
+    def beside(self, offsets: Mapping[str, FloatArray]) -> Ways:
+        """Return the ways where some parts are beside their places; both share what they know of pairs.
+
+        Args:
+            offsets: By part, from its place, in the ground frame `(3,)` [mm].
+        """
+        found = copy(self)
+        found.offsets = dict(offsets)
+        moved = {name: SE3.from_translation(offset) @ self._in_place[name] for name, offset in offsets.items()}
+        found.poses = {**self._in_place, **moved}
+        return found
+
+    def apart(self, part: str, other: str) -> FloatArray:
+        """Return how far a part is from its place as another part sees it, `(3,)` [mm]: the difference of their offsets."""
+        none = np.zeros(3)
+        return np.asarray(self.offsets.get(part, none) - self.offsets.get(other, none))
 
     def travel(self, part: str, other: str, direction: FloatArray, offset: FloatArray | None = None) -> float:
         """Return how far a part moves along a unit vector `(3,)` before it meets another part [mm]; infinity if it never does.
@@ -213,9 +233,11 @@ class Ways:
     def met(self, part: str, other: str, direction: FloatArray) -> float:
         """Return how much material of a part another part is in the way of, when the part leaves along a unit vector `(3,)` [mm³]."""
         at, sign = self._index(direction)
-        key = (part, other, at, sign)
+        before = self.apart(part, other)
+        key = (part, other, at, sign, tuple(before.tolist()))
         if key not in self._met:
-            both = (self._outline(part, self.depth(part, other), at), self._outline(other, 0.0, at))
+            moved = self._outline(part, self.depth(part, other), at).shifted(before, self._directions[at])
+            both = (moved, self._outline(other, 0.0, at))
             self._met[key] = material_met(*(each if sign > 0 else each.reversed for each in both))
         return self._met[key]
 
@@ -241,7 +263,7 @@ class Ways:
         """Return the key of what is known of a pair's way, which is the same for both parts, and which of its two ways is meant."""
         at, sign = self._index(direction)
         a, b = sorted((part, other))
-        before = np.zeros(3) if offset is None else offset
+        before = self.apart(part, other) + (0.0 if offset is None else offset)
         if part != a:
             sign, before = -sign, -before  # the other way round, the other part moves backwards
         return (a, b, at, tuple(before.tolist()) if before.any() else ()), 0 if sign > 0 else 1
@@ -255,7 +277,7 @@ class Ways:
         return moved, self._outline(b, 0.0, at)
 
     def _outline(self, part: str, depth: float, at: int) -> Outline:
-        return self.outlines.of(part, depth, self.poses[part], self._directions[at])
+        return self.outlines.of(part, depth, self._in_place[part], self._directions[at])
 
     def _index(self, direction: FloatArray) -> tuple[int, int]:
         """Return the number of a direction or of its opposite, and the sign."""

@@ -166,7 +166,7 @@ class _Manual:
         sheet.table(
             PAGE[0] - _MARGIN,
             22.0 + 4.0 * len(lines),
-            "New in this step",
+            "Moved in this step" if step.slides else "New in this step",
             ("item", "name", "qty", "material", "kg"),
             rows,
             (14.0, 74.0, 14.0, 50.0, 30.0),
@@ -178,7 +178,7 @@ class _Manual:
             "step": step.number,
             "view": self.view,
             "callouts": sorted(shown),
-            "items": [int(row[0]) for row in rows],
+            "items": [] if step.slides else [int(row[0]) for row in rows],
         }
         return sheet
 

@@ -86,14 +86,15 @@ def viewer_model(assembly: Assembly) -> Json:
 def drawn_steps(assembly: Assembly, order: Json) -> Json:
     """Return the steps of an order of assembly as the page plays them: what is new, what is in place, and the path.
 
-    The page moves the whole by itself. Where a loop is still open, the parts stand where the whole never has them, and their poses are stated.
+    The page moves the whole by itself. Where a loop is still open, or parts wait beside their places, they stand where the whole never has them,
+    and their poses are stated.
     """
     mechanism = assembly.mechanism
     index = {name: number for number, name in enumerate(mechanism.parts)}
     size, found = _size(assembly), AssemblyOrder.from_json(order)
     steps: list[Json] = []
     for step in found.steps:
-        poses = step_poses(mechanism, step, found.base) if step.opened else {}
+        poses = step_poses(mechanism, step, found.base) if step.opened or step.beside else {}
         steps.append(
             {
                 "parts": [index[name] for name in step.parts],
