@@ -36,10 +36,9 @@ from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
 from articad.kernels.failures import poisoned, script_failure, scrubbed, unconfined
 from articad.kernels.freecad_file import rounded, settled, shortened
-from articad.kernels.freecad_install import FreeCAD, FreeCADEnded, FreeCADLimits
+from articad.kernels.freecad_install import BY_SIGNAL, FreeCAD, FreeCADEnded, FreeCADLimits
 from articad.kernels.kernel import BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, numbers, read_bytes, read_lines
-from articad.kernels.timers import WAITING
 from articad.kernels.zygote import JobOutcome
 
 DOCUMENT = "part.FCStd"
@@ -184,7 +183,7 @@ class FreeCADKernel(Build123dKernel):
             raise PoisonedError("connectors are missing")
         seconds = self.limits.probe_seconds if probe is not None else 0.0
         told = {"connectors": entries, "dimensions": brief["dimensions"], "seconds": seconds}
-        looked = self._inside("probe", job, told, (DOCUMENT,), ("shape.bin",), WAITING * seconds + self.limits.seconds)
+        looked = self._inside("probe", job, told, (DOCUMENT,), ("shape.bin",), seconds + self.limits.seconds)
         tree = looked.report[0] if looked.report else {}
         found = list(tree_findings(part, tree))
         if tree.get("ok") is not True:
@@ -396,7 +395,7 @@ def _opened(job: Path, names: tuple[str, ...], reads: int) -> Iterator[list[int]
 
 def _outcome(ended: FreeCADEnded) -> JobOutcome:
     """Return how a process ended, as the worker reports it; FreeCAD itself turns a crash into exit code 1."""
-    killed = ended.code - 128 if ended.code > 128 else -min(ended.code, 0)
+    killed = ended.code - BY_SIGNAL if ended.code > BY_SIGNAL else -min(ended.code, 0)
     crashed = signal.SIGSEGV if "SIGSEGV" in ended.said or "Segmentation" in ended.said else 0
     return JobOutcome(None if killed or crashed else ended.code, int(killed or crashed), ended.late, 0)
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import math
 import os
 import re
+import signal
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -20,6 +22,7 @@ from articad.errors import KernelUnavailableError
 from articad.files import user_folder
 from articad.findings import Finding
 from articad.kernels import landlock, sandbox, seccomp
+from articad.kernels.timers import WAITING
 from articad.processes import launcher
 
 OLDEST = (1, 0)  # the first FreeCAD with an assembly workbench
@@ -50,6 +53,8 @@ _SETTINGS = (
 _INSIDE_PROGRAMS = Path(__file__).parent / "inside_freecad"
 _OPEN_FILES = 256
 _turns = itertools.count(os.getpid())  # counter of processes inside FreeCAD
+_DEFYING_SECONDS = 2
+BY_SIGNAL = 128  # the exit code of bubblewrap whose process a signal ended is this and the signal's number
 _TAIL = 8000  # bytes of its output that are kept
 
 
@@ -58,7 +63,7 @@ class FreeCADLimits:
     """Resources that a process inside FreeCAD may use.
 
     Attributes:
-        seconds: Wall clock.
+        seconds: Processor time; the wall clock may be `timers.WAITING` times as long.
         memory: Address space [bytes]; FreeCAD itself takes 1 GiB of it.
         file_size: Largest size of each file it writes [bytes].
         scratch: Size of its private /tmp [bytes].
@@ -76,7 +81,7 @@ class FreeCADEnded:
 
     Attributes:
         code: Its exit code; negative for a signal.
-        late: Whether it was killed at its deadline.
+        late: Whether it was ended because its processor time or the wall clock was over.
         said: The end of its output, for people only.
         unconfined: Why the sandbox could not be set up, so that nothing of the program ran; empty if it was.
     """
@@ -155,12 +160,12 @@ class FreeCAD:
         before = [*_steady(), *_limited(limits)]
         if not confined:
             environment = _ENVIRONMENT | {"PATH": os.environ.get("PATH", os.defpath), "HOME": str(folder or "/nonexistent")}
-            return _ran([*before, self.program, "-c", run], environment, folder, files, limits.seconds)
+            return _ran([*before, self.program, "-c", run], environment, folder, files, WAITING * limits.seconds)
         fault, faulty = os.pipe2(os.O_CLOEXEC | os.O_NONBLOCK)
         try:
             inner = [self.program, "-c", f"{self._confinement(folder, limits, layers, faulty)};{run}"]
             command = [*before, *self._confined(inner, program, folder, limits, layers)]
-            ended = _ran(command, {}, None, [*files, faulty], limits.seconds)
+            ended = _ran(command, {}, None, [*files, faulty], WAITING * limits.seconds)
             with contextlib.suppress(BlockingIOError):
                 ended = replace(ended, unconfined=os.read(fault, 500).decode(errors="replace"))
         finally:
@@ -173,7 +178,14 @@ class FreeCAD:
         told = {
             "fault": faulty,
             "layers": sorted({"landlock", "seccomp"} & set(layers) & sandbox.available()),
-            "limits": {"AS": limits.memory, "FSIZE": limits.file_size, "CPU": _cpu(limits), "NOFILE": _OPEN_FILES, "CORE": 0, "MEMLOCK": 0},
+            "limits": {
+                "AS": limits.memory,
+                "FSIZE": limits.file_size,
+                "CPU": _processor_time(limits)[1],
+                "NOFILE": _OPEN_FILES,
+                "CORE": 0,
+                "MEMLOCK": 0,
+            },
             "readable": ["/program.py"] + ([] if self.prefix is None else [str(self.prefix)]),
             "turn": next(_turns),
             "writable": ["/tmp"] + ([] if folder is None else ["/work"]),  # noqa: S108 - a private one
@@ -351,12 +363,20 @@ def _limited(limits: FreeCADLimits) -> list[str]:
     prlimit = launcher.which("prlimit")
     if prlimit is None:
         return []
-    bounds = {"as": limits.memory, "fsize": limits.file_size, "cpu": _cpu(limits), "nofile": _OPEN_FILES, "core": 0}
+    bounds = {
+        "as": limits.memory,
+        "fsize": limits.file_size,
+        "cpu": "{}:{}".format(*_processor_time(limits)),
+        "nofile": _OPEN_FILES,
+        "core": 0,
+    }
     return [prlimit, *(f"--{name}={value}" for name, value in bounds.items())]
 
 
-def _cpu(limits: FreeCADLimits) -> int:
-    return int(max(limits.seconds, 0.0) * 2) + 1
+def _processor_time(limits: FreeCADLimits) -> tuple[int, int]:
+    """Return the whole seconds after which a process gets SIGXCPU, and after which it is killed if it defies that."""
+    soft = math.ceil(max(limits.seconds, 0.0)) + 1
+    return soft, soft + _DEFYING_SECONDS
 
 
 def _confinement_files() -> dict[str, Path]:
@@ -368,4 +388,5 @@ def _confinement_files() -> dict[str, Path]:
 def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | None, files: Collection[int], seconds: float) -> FreeCADEnded:
     limits, place = launcher.Limits(seconds=seconds), None if folder is None else str(folder)
     ended = launcher.run(command, environment=environment, folder=place, files=files, limits=limits, merged=True)
-    return FreeCADEnded(ended.code, ended.late, ended.out[-_TAIL:].decode(errors="replace"))
+    late = ended.late or ended.code in (-signal.SIGXCPU, BY_SIGNAL + signal.SIGXCPU)
+    return FreeCADEnded(ended.code, late, ended.out[-_TAIL:].decode(errors="replace"))

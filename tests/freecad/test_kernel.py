@@ -173,6 +173,13 @@ def test_an_endless_script_ends_at_its_limit() -> None:
     assert [finding.code for finding in raised.value.findings] == ["E_SCRIPT_TIMEOUT"]
 
 
+def test_waiting_costs_no_processor_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A busy machine makes every script wait."""
+    monkeypatch.setattr("articad.kernels.freecad._START_SECONDS", 0.0)
+    impatient = FreeCADKernel(timeout=4.0)
+    assert impatient.build(f"import time\ntime.sleep(5)\n{GOOD}".encode(), PLATE, probe=False).solid.volume > 0
+
+
 def test_the_judgement_of_a_tree_needs_no_freecad() -> None:
     tree = {"ok": True, "off_tip": ["Pattern"], "invalid": ["Pad"], "sketched": False, "untied": ["width"]}
     found = [finding.code for finding in tree_findings("plate", tree)]

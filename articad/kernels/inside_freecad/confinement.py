@@ -31,6 +31,12 @@ _READABLE = (
 FAILED = 70
 
 
+def _soft(what: int) -> int:
+    """Return the present soft limit: that of processor time sends SIGXCPU, which says why the process ends, before the hard one kills."""
+    soft = resource.getrlimit(what)[0]
+    return sys.maxsize if soft == resource.RLIM_INFINITY else soft
+
+
 def confine(layers: list[str], limits: dict[str, int], more: list[str], writable: list[str], turn: int) -> None:
     """Apply the layers; after this neither a script nor FreeCAD itself can remove them.
 
@@ -49,7 +55,7 @@ def confine(layers: list[str], limits: dict[str, int], more: list[str], writable
         what = getattr(resource, f"RLIMIT_{name}")
         hard = resource.getrlimit(what)[1]
         bound = value if hard == resource.RLIM_INFINITY else min(value, hard)
-        resource.setrlimit(what, (bound, bound))
+        resource.setrlimit(what, (min(bound, _soft(what)), bound))
     processors = sorted(os.sched_getaffinity(0))
     os.sched_setaffinity(0, {processors[turn % len(processors)]})
     libc = ctypes.CDLL(None, use_errno=True)
