@@ -29,6 +29,7 @@ from articad.runs.run import REQUEST_FILE, write_atomically
 
 Tool = Callable[..., Awaitable[Any]]
 Dialect = Literal["build123d", "freecad"]
+Kernel = Annotated[Dialect | None, Field(description="the plan's by default")]
 Paper = Literal["manual", "bom", "drawing"]
 Format = Literal["urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd"]
 
@@ -110,14 +111,14 @@ class Tools:
         return answers.changed(before, await self._checked(design))
 
     async def build_part(
-        self, context: Context, design: Design, part: str, script: str | None = None, kernel: Dialect = "build123d", detail: Detail = False
+        self, context: Context, design: Design, part: str, script: str | None = None, kernel: Kernel = None, detail: Detail = False
     ) -> Json:
         """Save a part's script, build it, and check it against its contract."""
         folder = self.bench.design(design)
         if script is not None:
             self.bench.write_script(design, part, script, kernel)
         words = [str(folder), self.bench.part(part)]
-        report = await self.bench.run("part", f"--kernel={kernel}", on=words, seconds=_PART_S, tell=_teller(context))
+        report = await self.bench.run("part", *_with(kernel), on=words, seconds=_PART_S, tell=_teller(context))
         return condensed(answers.tidied(report), detail=detail, keep=("volume_mm3", "mass_kg", "bbox_mm"))
 
     async def build_parts(
@@ -130,7 +131,7 @@ class Tools:
                 description='scripts in files under the root, by part: {"crank,rocker": "bar.py"}; without it, all scripts of the design'
             ),
         ] = None,
-        kernel: Dialect = "build123d",
+        kernel: Kernel = None,
         detail: Detail = False,
     ) -> Json:
         """Build several parts, or all, in parallel, and check them against their contracts."""
@@ -142,14 +143,14 @@ class Tools:
                 self.bench.write_script(design, name, script, kernel)
                 names.append(name)
         seconds = _PART_S + _MORE_PARTS_S * len(names or self.bench.parts(design))
-        report = await self.bench.run("part", f"--kernel={kernel}", on=[str(folder), *names], seconds=seconds, tell=_teller(context))
+        report = await self.bench.run("part", *_with(kernel), on=[str(folder), *names], seconds=seconds, tell=_teller(context))
         return condensed(report if detail else report | {"parts": answers.solids(report)}, detail=detail, keep=("parts",))
 
     async def build(
         self,
         context: Context,
         design: Design,
-        kernel: Dialect = "build123d",
+        kernel: Kernel = None,
         complete: Annotated[bool, Field(description="also certify, have the proof checked, and write every format")] = False,
         detail: Detail = False,
     ) -> Json:
@@ -289,7 +290,7 @@ class Tools:
         report = await self.bench.run("convert", *(["--strict"] if strict else []), on=files, seconds=_BUILD_S, tell=_teller(context))
         return condensed(report, detail=detail, keep=("main", "rows"))
 
-    async def edit_parameters(self, context: Context, design: Design, values: dict[str, float], kernel: Dialect = "build123d") -> Json:
+    async def edit_parameters(self, context: Context, design: Design, values: dict[str, float], kernel: Kernel = None) -> Json:
         """Change parameters of the plan, build again, and say which parts changed and which are provably the same."""
         folder = self.bench.design(design)
         kept = self.bench.read(f"{design}/plan.json")
@@ -356,11 +357,11 @@ class Tools:
         self.bench.design(design)
         return self._plans.get(design) == self.bench.read(f"{design}/plan.json")
 
-    async def _built(self, context: Context, folder: Path, kernel: str, *, complete: bool = False) -> Json:
+    async def _built(self, context: Context, folder: Path, kernel: Kernel, *, complete: bool = False) -> Json:
         out = self._require_run(folder)
         if out.exists():
             shutil.rmtree(out)  # the run is derived from the design
-        words = [f"--out={out}", f"--kernel={kernel}", "--no-pictures", *(["--complete"] if complete else [])]
+        words = [f"--out={out}", *_with(kernel), "--no-pictures", *(["--complete"] if complete else [])]
         seconds = _COMPLETE_S if complete else _BUILD_S
         report = await self.bench.run("build", *words, on=[str(folder)], seconds=seconds, tell=_teller(context))
         assembly, checks = report.get("assembly", {}), report.get("checks", {})
@@ -440,6 +441,11 @@ def _told(method: Tool, refusal: type[Exception] = ToolError) -> Tool:
         return answers.compact(answer) if isinstance(answer, dict) else answer
 
     return told
+
+
+def _with(kernel: Kernel) -> list[str]:
+    """Return the option that chooses a kernel; without one, the command takes the plan's."""
+    return [] if kernel is None else [f"--kernel={kernel}"]
 
 
 def _size(value: Any) -> int:

@@ -169,12 +169,13 @@ class Workbench:
         """
         return self._write_script(self.design(design) / COMMON, script)
 
-    def write_script(self, design: str, part: str, script: str, kernel: str) -> Path:
-        """Save a part's script.
+    def write_script(self, design: str, part: str, script: str, kernel: str | None = None) -> Path:
+        """Save a part's script for a kernel, by default the plan's.
 
         Raises:
             ReadError: If it is too large, or the part's name is not valid.
         """
+        kernel = kernel or self.document(design).get("kernel")
         return self._write_script(
             self.design(design) / "parts" / f"{self.part(part)}{'.freecad.py' if kernel == 'freecad' else '.py'}", script
         )

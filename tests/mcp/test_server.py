@@ -230,6 +230,22 @@ def test_a_long_certificate_can_be_cancelled_and_leaves_no_process(tmp_path: Pat
     over_stdio(tmp_path, work)
 
 
+def test_the_plan_chooses_the_kernel(tmp_path: Path) -> None:
+    """A script is stored for the plan's kernel, and that kernel is asked to build it."""
+    shutil.copytree(examples.folder("four_bar"), tmp_path / "bar", ignore=shutil.ignore_patterns("recording"))
+    plan = json.loads((tmp_path / "bar" / "plan.json").read_text()) | {"kernel": "freecad"}
+    (tmp_path / "bar" / "plan.json").write_text(json.dumps(plan))
+    script = "import FreeCAD\nbuild = 1"
+
+    async def call() -> str:
+        async with Client(make_server(tmp_path)) as client:
+            return await Agent(client).refused_or_failed("build_part", design="bar", part="crank", script=script)
+
+    said = finish(call())
+    assert (tmp_path / "bar" / "parts" / "crank.freecad.py").read_text() == script
+    assert "No module named" not in said, said  # as build123d says
+
+
 @pytest.mark.parametrize(
     ("tool", "arguments", "words"),
     [
