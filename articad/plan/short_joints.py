@@ -87,6 +87,8 @@ class Joints:
         """Give a part that is named without a connector one at the joint's place; only one of the two states x."""
         name = joint.get(side)
         part = self.parts.get(name) if isinstance(name, str) else None
+        if part is None and isinstance(name, str) and is_name(name):
+            joint[side] = f"{name}.{joint['name']}"  # the check of the plan says that there is no such part
         if part is None or "derive" in part or not isinstance(part.get("connectors"), list):
             return
         kept = {key: value for key, value in place.items() if key != "x" or side == "parent"}

@@ -418,3 +418,25 @@ def test_an_unknown_clause_of_a_joint_is_reported_as_a_field() -> None:
     with pytest.raises(PlanError) as refused:
         AssemblyPlan.from_json(plan)
     assert refused.value.findings.errors[0].where == "joints.turn.angel"  # the joint that is like it comes second
+
+
+@pytest.mark.parametrize("side", [0, 1])
+@pytest.mark.parametrize(
+    "text", ["hinge base arm; at 0,0,9 along z; pin 8,20; angle -9,9", "fixed base arm; at 0,0,9", "hinge base arm pin; at 0,0,9; pin 8,20"]
+)
+def test_a_part_that_is_misspelled_at_a_place_is_told_with_the_nearest_name(text: str, side: int) -> None:
+    wrong = text.replace(("base", "arm")[side], ("bse", "amr")[side], 1)
+    plan = {
+        "schema": "articad.short/1",
+        "name": "p",
+        "ground": "base",
+        "freedoms": 0,
+        "material": "steel",
+        "parts": {"base": "", "arm": "w=9"},
+    }
+    plan["joints"] = {"j": wrong}
+    found = check_plan(AssemblyPlan.loads(json.dumps(plan)))
+    told = [finding.hint for finding in found if finding.code == "E_PART_UNKNOWN"]
+    assert told
+    assert all(f"Did you mean {('base', 'arm')[side]!r}?" in hint for hint in told)
+    assert "E_SCHEMA" not in found.codes
