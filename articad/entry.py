@@ -41,7 +41,8 @@ def read(
     Args:
         source: A URDF, MJCF, FreeCAD or STEP file; a plan, `plan.json` or its folder, with part scripts beside it; or a run folder.
         root: Folder that meshes of a file may be read from; the file's own by default.
-        fuse: For URDF and MJCF: replace chains of joints over links without shapes by the one joint that they represent, such as a ball.
+        fuse: For URDF and MJCF: replace chains of joints over links without shapes, and the constraints that close a loop, by the one joint that they
+            represent, such as a ball or a hinge.
         sandbox: "weak" runs part scripts with less isolation than Landlock or bubblewrap give.
         progress: Called with the outcome of each part that is built.
 

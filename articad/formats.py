@@ -134,7 +134,8 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
     Args:
         path: A URDF, MJCF, SDFormat, FreeCAD or STEP file, or a plan with its part scripts.
         root: Folder that meshes may be read from; the file's own by default.
-        fuse: For URDF, MJCF and SDFormat: replace chains of joints over links without shapes by the one joint that they represent.
+        fuse: For URDF, MJCF and SDFormat: replace chains of joints over links without shapes, and the constraints that close a loop, by the one
+            joint that they represent.
         srdf: For URDF: the SRDF that belongs to it; by default the file of the same name beside it.
 
     Raises:

@@ -106,7 +106,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument(
         "--fuse",
         action="store_true",
-        help="for URDF, MJCF and SDF: replace chains of joints over links without shape by one joint, such as a ball",
+        help="for URDF, MJCF and SDF: replace chains of joints over links without shape, and the constraints that close a loop, by one joint",
     ),
     argument(
         "--keep-frames",
@@ -143,7 +143,7 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument(
         "--fuse",
         action="store_true",
-        help="for URDF, MJCF and SDF: replace chains of joints over links without shape by one joint, such as a ball",
+        help="for URDF, MJCF and SDF: replace chains of joints over links without shape, and the constraints that close a loop, by one joint",
     ),
     argument(
         "--no-build", dest="build", action="store_false", help="do not build the parts; those that cannot be built are not simplified"

@@ -149,7 +149,7 @@ class _Writer:
     def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles, again: Again) -> None:
         self.assembly, self.model, self.files, self.again = assembly, model, files, again
         files.expect(link.part for link in model.links)
-        self.sites = Names()
+        self.sites = Names(again.names("site"))
         self.asset: Any = None
         self.bodies: dict[str, Any] = {}
         self.assets: dict[str, str] = {}

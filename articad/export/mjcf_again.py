@@ -56,6 +56,10 @@ class Again:
             if item.format == "mjcf" and item.xml:
                 self._kept.setdefault(item.where, []).append(item)
 
+    def names(self, tag: str) -> list[str]:
+        """Return the names of the kept elements of a kind, which new ones must not have."""
+        return [element.get("name", "") for where in self._kept for _, element in self._elements(where) if element.tag == tag]
+
     def attributes(self, where: str, tag: str) -> dict[str, str]:
         """Return the kept attributes of a joint, a body or a geom; they count as written."""
         found: dict[str, str] = {}

@@ -709,10 +709,16 @@ CODES: dict[str, Code] = {
     ),
     "W_IMPORT_MUJOCO": Code("import", None, "MuJoCo accepts a model with a warning.", "Correct what the warning names."),
     "I_IMPORT_CHAIN": Code(
-        "import", None, "A chain of joints over links without shape could be read as one joint.", "Read with fuse to merge them."
+        "import",
+        None,
+        "A chain of joints over links without shape, or what closes a loop, could be read as one joint.",
+        "Read with fuse to merge them.",
     ),
     "I_IMPORT_FUSED": Code(
-        "import", None, "A chain of joints over links without shape is read as one joint.", "Read without fuse to keep them apart."
+        "import",
+        None,
+        "A chain of joints over links without shape, or what closes a loop, is read as one joint.",
+        "Read without fuse to keep them apart.",
     ),
     "I_ADOPT_MERGED": Code(
         "import",

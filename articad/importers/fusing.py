@@ -3,12 +3,13 @@
 A bare link has no shape, at most a gram of mass, one joint before it and one after it, and both meet in one point. With X the rotation
 between the two joints' frames: a slide and a turn about one axis form a cylindrical joint, or a screw if the slide follows the turn; two
 turns about perpendicular axes form a universal joint, three a ball; two slides and a turn about perpendicular axes form a planar joint.
+Constraints that close loops are merged after the chains (`fused_loops`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -19,6 +20,7 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
 from articad.geometry.mass import MassProperties
+from articad.importers.fused_loops import fused_loops, with_loops
 from articad.importers.raw import RawJoint, RawLink, RawModel, RawTie
 from articad.kinematics.joints import JointType
 
@@ -31,12 +33,17 @@ _SLIDE, _TURN = JointType.SLIDER, JointType.REVOLUTE
 
 
 def fused(model: RawModel) -> RawModel:
-    """Return the model with each chain over bare links that represents a supported joint replaced by that joint."""
-    return _replaced(model, _chains(model))
+    """Return the model with each chain over bare links, and the constraints of each loop, replaced by the joint that they represent."""
+    merged = _replaced(model, _chains(model))
+    loops = fused_loops(merged)
+    findings = [_merged(loop.joint, loop.represented_by) for loop in loops]
+    return replace(with_loops(merged, loops), findings=[*merged.findings, *findings])
 
 
 def with_chains_named(model: RawModel) -> RawModel:
-    """Return the model unchanged, with a note for every chain that `fused` would replace by one joint."""
+    """Return the model unchanged, with a note for everything that `fused` would replace by one joint."""
+    chains = _chains(model)
+    loops = [(loop.joint, loop.represented_by) for loop in fused_loops(_replaced(model, chains))]
     findings = [
         Finding(
             code="I_IMPORT_CHAIN",
@@ -44,7 +51,7 @@ def with_chains_named(model: RawModel) -> RawModel:
             message=f"{' and '.join(repr(part.name) for part in chain)} together form one {joint.type} joint; they are kept apart.",
             hint="Read with fuse to merge them.",
         )
-        for joint, chain in _chains(model).values()
+        for joint, chain in (*chains.values(), *loops)
     ]
     return replace(model, findings=[*model.findings, *findings])
 
@@ -305,15 +312,16 @@ def _replaced(model: RawModel, found: dict[str, tuple[RawJoint, tuple[RawJoint, 
         found[joint.name][0] if joint.name in found else joint for joint in model.joints if joint.name in found or joint.name not in gone
     ]
     ties = [tie for tie in model.ties if not {tie.follower, tie.leader} <= gone]
-    findings = [
-        Finding(
-            code="I_IMPORT_FUSED",
-            where=f"joints.{joint.name}",
-            message=f"{' and '.join(repr(part.name) for part in chain)} were merged into one {joint.type} joint {joint.name!r}.",
-            hint="Read without fuse to keep them apart.",
-        )
-        for joint, chain in found.values()
-    ]
+    findings = [_merged(joint, chain) for joint, chain in found.values()]
     links = {name: link for name, link in model.links.items() if name not in carriers}
     links |= {joint.child: _with_masses(model, chain) for joint, chain in found.values()}
     return replace(model, links=links, joints=joints, ties=ties, findings=[*model.findings, *findings])
+
+
+def _merged(joint: RawJoint, represented_by: Sequence[RawJoint]) -> Finding:
+    return Finding(
+        code="I_IMPORT_FUSED",
+        where=f"joints.{joint.name}",
+        message=f"{' and '.join(repr(part.name) for part in represented_by)} were merged into one {joint.type} joint {joint.name!r}.",
+        hint="Read without fuse to keep them apart.",
+    )

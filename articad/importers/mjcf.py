@@ -55,7 +55,7 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
         path: The file.
         root: Folder that meshes and includes may be read from; the file's own by default.
         metadata: Use the records that articad left in its own files, so that they come back as they were.
-        fuse: Without metadata, replace chains over bare links by one joint where articad has it.
+        fuse: Without metadata, replace chains over bare links, and the constraints of a loop, by one joint where articad has it.
 
     Raises:
         ReadError: If the file is not MJCF, names files outside the root, or is not a mechanism.

@@ -12,7 +12,7 @@ from typing import Final
 
 from articad.errors import ArticadError
 from articad.kinematics.joints import JointType
-from articad_bench.checks import AnyCheck, Joints, Lead, Made, Moves, Parts, moved_share
+from articad_bench.checks import AnyCheck, Joints, Lead, Made, Moves, Parts, moved_shares
 from articad_bench.likeness_checks import Arranged, Handed, Matter, Row, arrangement, filled, handedness, moments_of
 from articad_bench.subject import Subject
 from articad_bench.task import Task
@@ -41,7 +41,7 @@ def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
     for check in task.checks:
         if not isinstance(check, Joints) or check.joint.type is JointType.FIXED or check.number[0] < 1:
             continue
-        shares = [moved_share(subject, joint) for joint in check.joint.found(subject)]
+        shares = [moved[0] for joint in check.joint.found(subject) if (moved := moved_shares(subject, joint))]
         if not shares:
             continue
         volume, size = zip(*shares, strict=True)

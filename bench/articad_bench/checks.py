@@ -351,7 +351,8 @@ class Travel(Check):
 class Moves(Check):
     """A number of joints move bodies of this share of all matter and of this size, as a share of the whole's.
 
-    What a joint moves is everything fixed to its child, or to its parent where the child is fixed to the ground. Size is the diagonal of the box at rest.
+    What a joint moves is the body beyond it, seen from the ground, whichever side is called its child. A joint of a loop moves either body that is not the ground:
+    it counts if one of them is within the bounds. A body is all that is fixed together. Size is the diagonal of the box at rest.
     """
 
     kind: Literal["moves"] = "moves"
@@ -366,10 +367,13 @@ class Moves(Check):
         return f"{in_words(self.number)} joints ({self.joint}) that move {volume} of the matter, {size} of the size"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        found = [moved_share(subject, joint) for joint in self.joint.found(subject)]
-        count = sum(self.volume[0] <= volume <= self.volume[1] and self.size[0] <= size <= self.size[1] for volume, size in found)
-        told = ", ".join(f"{100 * volume:.2g} % {100 * size:.3g} %" for volume, size in found[:8])
+        found = [moved_shares(subject, joint) for joint in self.joint.found(subject)]
+        count = sum(any(self._are(*shares) for shares in sides) for sides in found)
+        told = ", ".join(" or ".join(f"{100 * volume:.2g} % {100 * size:.3g} %" for volume, size in sides) for sides in found[:8])
         return self.number[0] <= count <= self.number[1], f"{count} ({told or 'no such joint'})"
+
+    def _are(self, volume: float, size: float) -> bool:
+        return self.volume[0] <= volume <= self.volume[1] and self.size[0] <= size <= self.size[1]
 
 
 class Gap(Check):
@@ -529,18 +533,27 @@ def _shapes(assembly: Assembly) -> Counter[str]:
     return Counter(part.mesh.digest for part in assembly.parts.values() if part.mesh is not None)
 
 
-def moved_share(subject: Subject, joint: Joint) -> tuple[float, float]:
-    """Return the share of the whole's volume, and of the diagonal of its box, that what a joint moves has at rest."""
-    ground = subject.rigid[subject.assembly.ground]
-    side = subject.rigid[joint.child] if subject.rigid[joint.child] != ground else subject.rigid[joint.parent]
-    bodies = [name for name in subject.shaped if subject.rigid[name] == side]
-    if not bodies:
-        return 0.0, 0.0
+def moved_shares(subject: Subject, joint: Joint) -> list[tuple[float, float]]:
+    """Return the share of the whole's volume, and of the diagonal of its box, of what a joint moves at rest: one body, or two in a loop."""
     volumes = {name: abs(subject.assembly.parts[name].mesh.volume) for name in subject.shaped}  # type: ignore[union-attr]
-    ends = subject.corners(subject.rest, bodies)
-    return sum(volumes[name] for name in bodies) / sum(volumes.values()), float(
-        np.linalg.norm(ends[1] - ends[0]) / np.linalg.norm(subject.size)
-    )
+    shares = []
+    for body in _moved_bodies(subject, joint):
+        parts = [name for name in subject.shaped if subject.rigid[name] == body]
+        side = float(np.linalg.norm(np.ptp(subject.corners(subject.rest, parts), axis=0))) if parts else 0.0
+        shares.append((sum(volumes[name] for name in parts) / sum(volumes.values()), side / float(np.linalg.norm(subject.size))))
+    return shares
+
+
+def _moved_bodies(subject: Subject, joint: Joint) -> list[str]:
+    """Return the body beyond a joint, seen from the ground; both bodies of a joint in a loop, without the ground."""
+    others = [(subject.rigid[each.parent], subject.rigid[each.child]) for each in _moving(subject) if each is not joint]
+    ground = subject.rigid[subject.assembly.ground]
+    reached, fresh = {ground}, {ground}
+    while fresh:
+        fresh = {end for ends in others for end in ends if fresh & {*ends}} - reached
+        reached |= fresh
+    ends = dict.fromkeys((subject.rigid[joint.child], subject.rigid[joint.parent]))
+    return [end for end in ends if end not in reached] or [end for end in ends if end != ground]
 
 
 def _moving(subject: Subject) -> list[Joint]:

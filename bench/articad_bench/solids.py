@@ -38,7 +38,7 @@ _ASIDE: Final = (3.7e-5, 6.1e-5)  # of a cell: columns never run along an edge
 Grid = NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Round:
     """A cylindrical face that goes (nearly) all the way round.
 
@@ -59,7 +59,7 @@ class Round:
     blind: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Piece:
     radius: float
     axis: FloatArray

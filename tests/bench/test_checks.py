@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
+from types import MappingProxyType
 from typing import Any
 
 import pytest
@@ -117,10 +119,10 @@ def test_sides_that_are_nearly_alike_are_each_compared_with_their_own(wanted: tu
     assert check.judge(Subject(Assembly.from_parts("one", parts=[part], joints=[], ground="block"))).ok is fits
 
 
-def of(*joints: Joint) -> Subject:
-    """Return small boxes that are joined like this."""
+def of(*joints: Joint, sides: Mapping[str, float] = MappingProxyType({})) -> Subject:
+    """Return small boxes that are joined like this, on the parent of the first joint."""
     names = dict.fromkeys(part for each in joints for part in (each.parent, each.child))
-    parts = [Part.from_mesh(name, box(5, 5, 5), density=1000) for name in names]
+    parts = [Part.from_mesh(name, box(*[sides.get(name, 5)] * 3), density=1000) for name in names]
     return Subject(Assembly.from_parts("joined", parts=parts, joints=list(joints), ground=parts[0].name))
 
 
@@ -142,6 +144,25 @@ def test_skew_pins_are_as_far_apart_as_their_lines() -> None:
     across = joint("across", "revolute", ("arm", at(40, 25, 60) @ SE3.rot_y(math.pi / 2)), ("hand", at(0)), limits=[(-9.0, 9.0)])
 
     assert spacings(of(upright, across)) == {"arm": [pytest.approx(25.0)]}
+
+
+@pytest.mark.parametrize("closed", [False, True])
+@pytest.mark.parametrize("ends", [("lid", "handle"), ("handle", "lid")])
+def test_what_a_joint_moves_does_not_depend_on_which_side_is_its_child(ends: tuple[str, str], closed: bool) -> None:
+    """Seen from the ground, the handle is beyond its joint; if the handle is joined to the ground as well, its joint moves the handle or the lid."""
+    lid = joint("lid", "revolute", ("base", at(0)), ("lid", at(0)), limits=[(-9.0, 9.0)])
+    handle = joint("handle", "slider", (ends[0], at(0)), (ends[1], at(0)), limits=[(-9.0, 9.0)])
+    closing = [joint("closing", "revolute", ("base", at(0)), ("handle", at(0)), limits=[(-9.0, 9.0)])] if closed else []
+    subject = of(lid, handle, *closing, sides={"lid": 10, "base": 20})
+
+    found = {
+        part: form({"kind": "moves", "joint": {"type": "slider"}, "volume": [0.9 * cm3 / 9.125, 1.1 * cm3 / 9.125], "size": [0, 2]})
+        .judge(subject)
+        .ok
+        for part, cm3 in {"handle": 0.125, "lid": 1.0, "base": 8.0}.items()
+    }
+
+    assert found == {"handle": True, "lid": closed, "base": False}
 
 
 def test_a_ball_goes_from_side_to_side_of_its_cone() -> None:

@@ -65,6 +65,17 @@ def test_faces_in_halves_are_one_hole() -> None:
     assert sorted((r.hollow, round(r.radius, 6)) for r in found) == [(False, 10), (True, 6)]
 
 
+def test_two_holes_of_one_size_whose_halves_alternate_are_two() -> None:
+    mesh = tube(6, 10, 25, 64)
+    halves = (2 * _kind(mesh) + (mesh.vertices[mesh.triangles].mean(axis=1)[:, 0] > 0)).astype(np.int32)
+    both = merged([mesh, mesh.transformed(SE3.from_translation(np.array([32.0, 0, 0])))])
+    order = np.argsort(np.tile(halves, 2), kind="stable")  # a half of the first, a half of the second, and again
+
+    found = rounds(TriMesh(both.vertices, both.triangles[order], np.concatenate([halves, halves + 6])[order]))
+
+    assert sorted((r.hollow, round(r.radius, 6)) for r in found) == [(False, 10)] * 2 + [(True, 6)] * 2
+
+
 def _kind(mesh: TriMesh) -> FloatArray:
     """0 below and above, 1 inside, 2 outside."""
     normals = mesh.normals_of_twice_area
