@@ -113,7 +113,7 @@ def _fuse(joints: tuple[RawJoint, ...], ties: list[RawTie]) -> RawJoint | None:
     kinds = tuple(joint.type for joint in joints)
     rule = _RULES.get(kinds)
     tied = {tie.follower for tie in ties} | {tie.leader for tie in ties}
-    inner = [tie for tie in ties if {tie.follower, tie.leader} == {joint.name for joint in joints}]
+    inner = _relation(ties, joints) if len(joints) == 2 else []
     if (
         rule is None
         or (rule is not _fuse_cylindrical and not _meet(joints))
@@ -121,6 +121,24 @@ def _fuse(joints: tuple[RawJoint, ...], ties: list[RawTie]) -> RawJoint | None:
     ):
         return None
     return rule(joints, inner)
+
+
+def _relation(ties: list[RawTie], joints: tuple[RawJoint, ...]) -> list[RawTie]:
+    """Return how the first of two joints follows the second, directly or through others that both follow; nothing if it does not."""
+    first, second = (joint.name for joint in joints)
+    found = {second: (1.0, 0.0)}  # value = ratio · value(second) + offset
+    usable = [tie for tie in ties if tie.ratio]
+    for _ in usable:
+        for tie in usable:
+            if tie.leader in found and tie.follower not in found:
+                ratio, offset = found[tie.leader]
+                found[tie.follower] = tie.ratio * ratio, tie.ratio * offset + tie.offset
+            elif tie.follower in found and tie.leader not in found:
+                ratio, offset = found[tie.follower]
+                found[tie.leader] = ratio / tie.ratio, (offset - tie.offset) / tie.ratio
+        if first in found:
+            return [RawTie(first, second, *found[first])]
+    return []
 
 
 def _between(first: RawJoint, second: RawJoint) -> SE3:
@@ -311,11 +329,31 @@ def _replaced(model: RawModel, found: dict[str, tuple[RawJoint, tuple[RawJoint, 
     joints = [
         found[joint.name][0] if joint.name in found else joint for joint in model.joints if joint.name in found or joint.name not in gone
     ]
-    ties = [tie for tie in model.ties if not {tie.follower, tie.leader} <= gone]
+    ties = _ties_of_screws(model.ties, [pair for pair in found.values() if pair[0].type is JointType.SCREW])
     findings = [_merged(joint, chain) for joint, chain in found.values()]
     links = {name: link for name, link in model.links.items() if name not in carriers}
     links |= {joint.child: _with_masses(model, chain) for joint, chain in found.values()}
-    return replace(model, links=links, joints=joints, ties=ties, findings=[*model.findings, *findings])
+    whole = {part.name: joint.name for joint, chain in found.values() for part in chain}
+    driven = frozenset(whole.get(name, name) for name in model.driven)
+    return replace(model, links=links, joints=joints, ties=ties, driven=driven, findings=[*model.findings, *findings])
+
+
+def _ties_of_screws(ties: list[RawTie], screws: Sequence[tuple[RawJoint, tuple[RawJoint, ...]]]) -> list[RawTie]:
+    """Return ties of screws in place of those of the slides and turns that they replace, without those within a screw."""
+    values: dict[str, tuple[str, float, float]] = {}  # joint: the screw, and ratio and offset of its value by the screw's
+    for screw, (first, second) in screws:
+        slide, turn = (first, second) if first.type is _SLIDE else (second, first)
+        sign = -1.0 if turn is second and _between(first, second).z_axis[2] < 0 else 1.0
+        (tie,) = _relation(ties, (slide, turn))
+        values[turn.name] = screw.name, sign, 0.0
+        values[slide.name] = screw.name, sign * tie.ratio, tie.offset
+    found: dict[tuple[str, str], RawTie] = {}
+    for tie in ties:
+        follower, a, b = values.get(tie.follower, (tie.follower, 1.0, 0.0))
+        leader, c, d = values.get(tie.leader, (tie.leader, 1.0, 0.0))
+        if follower != leader or tie.follower == tie.leader:
+            found.setdefault((follower, leader), RawTie(follower, leader, tie.ratio * c / a, (tie.ratio * d + tie.offset - b) / a))
+    return list(found.values())
 
 
 def _merged(joint: RawJoint, represented_by: Sequence[RawJoint]) -> Finding:

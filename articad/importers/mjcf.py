@@ -49,7 +49,8 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     """Read an MJCF file.
 
     Bodies become parts in their own frames, the world is the ground; joints keep their names and values, several joints of one body
-    become a chain over bare parts. Equality constraints of points, bodies and joints close loops and couple joints.
+    become a chain over bare parts. Equality constraints of points, bodies and joints close loops and couple joints; then joints with
+    actuators are the drivers.
 
     Args:
         path: The file.
@@ -119,6 +120,8 @@ class _Reader:
             self._add_joints(body)
         for row in range(self.m.neq):
             self._add_equality(row)
+        actuators = [element.get("joint") or element.get("jointinparent") for element in self.document.iterfind("actuator/*")]
+        self.raw.driven = frozenset(name for name in actuators if name)
         return self.raw
 
     def _unique(self, kind: str, count: int) -> list[str]:

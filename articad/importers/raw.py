@@ -7,7 +7,7 @@ Links keep their own frames, so that poses can be compared with other readers. A
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -117,6 +117,7 @@ class RawModel:
         links: By name, in the file's order.
         joints: In the file's order.
         ties: Between joints of one coordinate.
+        driven: Names of the joints on which actuators act.
         findings: Findings about what could not be converted.
         kept: Data of the file that no other field holds.
     """
@@ -126,6 +127,7 @@ class RawModel:
     links: dict[str, RawLink] = field(default_factory=dict)
     joints: list[RawJoint] = field(default_factory=list)
     ties: list[RawTie] = field(default_factory=list)
+    driven: frozenset[str] = frozenset()
     findings: list[Finding] = field(default_factory=list)
     kept: list[Kept] = field(default_factory=list)
 
@@ -182,6 +184,8 @@ def assemble(model: RawModel, path: Path) -> Assembly:
     try:
         mechanism = Mechanism(tuple(parts), model.ground, joints, couplings)
         mechanism.rest  # noqa: B018 - raises if loops do not close
+        if not mechanism.is_tree:
+            mechanism = _driven(mechanism, joints, model.driven)
     except (ArticadError, np.linalg.LinAlgError) as error:
         raise unreadable(path, "", f"It is not a valid mechanism: {error}") from error
     kept_at = {item.where for item in model.kept if item.format == "mjcf"}  # what MJCF says there is kept, and reported where it is lost
@@ -191,6 +195,21 @@ def assemble(model: RawModel, path: Path) -> Assembly:
         if finding.code in _CHANGED and not finding.where.startswith("equality.") and finding.where not in kept_at
     ]
     return Assembly(model.name, mechanism, parts, findings=Findings(model.findings), foreign=True, kept=(*model.kept, *changed))
+
+
+def _driven(mechanism: Mechanism, joints: list[Joint], names: frozenset[str]) -> Mechanism:
+    """Return a mechanism whose drivers are these joints, without those that follow the others."""
+    names = frozenset(joint.name for joint in joints if joint.name in names and joint.type not in {JointType.FIXED, JointType.FREE})
+    while names:
+        marked = [replace(joint, driver=joint.name in names) for joint in joints]
+        mechanism = Mechanism(mechanism.parts, mechanism.ground, marked, mechanism.couplings)
+        refused = {joint.name for joint in mechanism.branch.refused}
+        if not refused:
+            break
+        names -= refused
+    else:
+        return Mechanism(mechanism.parts, mechanism.ground, joints, mechanism.couplings)
+    return mechanism
 
 
 def _consistent_ties(model: RawModel) -> list[RawTie]:

@@ -152,7 +152,7 @@ class PartSize(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         sides = sorted(side for side in self.mm if side is not None)
-        found = [name for name in subject.shaped if self._fits(sides, subject.extents(name)) or self._in_some_frame(sides, subject, name)]
+        found = [name for name in subject.shaped if self._in_some_frame(sides, subject, name)]
         sizes = ", ".join(f"{name} {_by(subject.extents(name))}" for name in subject.shaped[:12])
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({sizes})"
 

@@ -13,9 +13,11 @@ from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
 from articad.runs.record import assembly_of
 from articad.runs.run import Run
+from articad_bench.check import Judgement
 from articad_bench.row import Row
 from articad_bench.subject import Subject
 from articad_bench.task import Task
+from articad_bench.unsaid import asked_for, format_of, unsaid
 
 EDITED: Final = "_edited"  # what is appended to a task's name where a tool's edited model is
 _SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})
@@ -36,8 +38,9 @@ def score_files(tasks: Iterable[tuple[Path, Task]], folder: str | Path) -> list[
 def _scored(task: Task, folder: Path) -> Row:
     row, started = Row.of(task), time.monotonic()
     try:
-        before = subject_of(model_of(task.name, folder))
-        row = replace(row, judgements=task.judge(before))
+        place = model_of(task.name, folder)
+        before = subject_of(place)
+        row = replace(row, judgements=_excused(task.judge(before), task, place))
         if task.edit is not None:
             row = _scored_edit(row, task, folder, before)
     except ArticadError as error:
@@ -45,10 +48,20 @@ def _scored(task: Task, folder: Path) -> Row:
     return replace(row, seconds=time.monotonic() - started)
 
 
+def _excused(judgements: tuple[Judgement, ...], task: Task, place: Path) -> tuple[Judgement, ...]:
+    """Return judgements that say which checks cannot hold because the format of the file cannot state what they need."""
+    reasons = unsaid(format_of(place.suffix), asked_for(task))
+    return tuple(
+        replace(each, measured=f"{each.measured}. {reasons[each.kind]}") if not each.ok and each.kind in reasons else each
+        for each in judgements
+    )
+
+
 def _scored_edit(row: Row, task: Task, folder: Path, before: Subject) -> Row:
     try:
-        edited = replace(subject_of(model_of(f"{task.name}{EDITED}", folder)), before=before.assembly)
-        return replace(row, edited=task.judge_edit(edited))
+        place = model_of(f"{task.name}{EDITED}", folder)
+        edited = replace(subject_of(place), before=before.assembly)
+        return replace(row, edited=_excused(task.judge_edit(edited), task, place))
     except ArticadError as error:
         return replace(row, edit_error=f"{type(error).__name__}: {error}")
 

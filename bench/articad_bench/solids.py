@@ -27,8 +27,15 @@ ROUND: Final = 0.02  # of the radius, by which corners may lie beside the circle
 ARC_RAD: Final = math.radians(300)  # at least so much of a circle is a hole or a stud
 PIECE_RAD: Final = math.radians(20)  # less of a circle than this has no certain radius
 SAME_MM: Final = 0.02  # pieces of one cylinder have the same axis and radius
+AXES: Final = 4  # directions in which cylinders are looked for within one smooth surface
+UPRIGHT: Final = 2e-3  # cosine of the angle of a cylinder's normals to its axis, at most
+SLENDER: Final = 3.0  # length of a facet by its width
 SAMPLES: Final = 200  # points of a surface at which a wall is measured
 BOX_DIRECTIONS: Final = 8  # in which most of a surface faces
+SAME_WAY: Final = 1e-6  # by which the cosine of the angle between normals of one direction is less than one
+SAME_AREA: Final = 0.01  # share by which the areas of facets of one round face differ
+EYES: Final = 10  # lines from one hole or stud to another; a plate with more is not measured along them
+GRID_ROUNDING: Final = 1e-4  # of a cell: coordinates of single precision make no other number of cells
 CELLS: Final = 100  # along the longest side, where volumes are counted
 FLAT_CELLS: Final = 64  # above one another, where it matters how high water stands
 FOOT_MM: Final = 0.2  # corners so near the ground stand on it
@@ -68,6 +75,13 @@ class _Piece:
     hollow: bool
     points: FloatArray
 
+    def is_slender(self) -> bool:
+        """Return whether facets are much longer than wide."""
+        u = np.cross(self.axis, [1.0, 0, 0] if abs(self.axis[0]) < 0.9 else [0, 1.0, 0])
+        beside = self.points - self.foot
+        facets = len(np.unique(np.round(np.arctan2(beside @ np.cross(self.axis, u), beside @ u), 6)))
+        return self.span[1] - self.span[0] > SLENDER * math.tau * self.radius / facets
+
     def continues(self, other: _Piece) -> bool:
         alike = self.hollow == other.hollow and abs(self.radius - other.radius) < SAME_MM and abs(float(self.axis @ other.axis)) > 1 - 1e-6
         return (
@@ -83,12 +97,16 @@ def rounds(mesh: TriMesh) -> list[Round]:
     mesh = mesh.welded(1e-6)
     normals = mesh.normals_of_twice_area
     area = np.linalg.norm(normals, axis=1)
-    faces = _smooth_faces(mesh, normals, area) if mesh.face is None else np.asarray(mesh.face)
+    unit = normals / np.where(area > 0, area, 1)[:, None]
+    smooth = _Smooth.of(mesh, unit, area > 0)
+    faces = smooth.pieces(np.ones(len(area), dtype=np.bool_)) if mesh.face is None else np.asarray(mesh.face)
     pieces = []
     for face in dict.fromkeys(faces.tolist()):
         chosen = (faces == face) & (area > 0)
         if (piece := _cylinder(mesh, normals[chosen], mesh.triangles[chosen])) is not None:
             pieces.append(piece)
+        elif mesh.face is None:
+            pieces += _cylinders_within(mesh, normals, unit, chosen, smooth)
     found = []
     while pieces:
         group = [pieces.pop(0)]
@@ -101,18 +119,68 @@ def rounds(mesh: TriMesh) -> list[Round]:
     return found
 
 
-def _smooth_faces(mesh: TriMesh, normals: FloatArray, area: FloatArray) -> NDArray[Any]:
-    edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    owner = np.repeat(np.arange(len(mesh.triangles)), 3)
-    order = np.lexsort(edges.T)
-    edges, owner = edges[order], owner[order]
-    pairs = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1))
-    a, b = owner[pairs], owner[pairs + 1]
-    unit = normals / np.where(area > 0, area, 1)[:, None]
-    smooth = ((unit[a] * unit[b]).sum(axis=1) > math.cos(BEND_RAD)) | (area[a] == 0) | (area[b] == 0)
-    count = len(mesh.triangles)
-    graph = coo_matrix((np.ones(int(smooth.sum())), (a[smooth], b[smooth])), shape=(count, count))
-    return np.asarray(connected_components(graph, directed=False)[1])
+@dataclass(frozen=True, eq=False)
+class _Smooth:
+    """Pairs of triangles across an edge at which the surface hardly bends: the triangles `(n,)` each, the edges' vertices `(n, 2)`."""
+
+    first: NDArray[Any]
+    second: NDArray[Any]
+    edges: NDArray[Any]
+    count: int
+
+    @classmethod
+    def of(cls, mesh: TriMesh, unit: FloatArray, real: Grid) -> _Smooth:
+        """Return the pairs of a mesh.
+
+        Args:
+            mesh: The mesh.
+            unit: Its normals `(n, 3)`.
+            real: Whether a triangle has an area; one without belongs to all its neighbours `(n,)`.
+        """
+        edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        owner = np.repeat(np.arange(len(mesh.triangles)), 3)
+        order = np.lexsort(edges.T)
+        edges, owner = edges[order], owner[order]
+        pairs = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1))
+        a, b = owner[pairs], owner[pairs + 1]
+        smooth = ((unit[a] * unit[b]).sum(axis=1) > math.cos(BEND_RAD)) | ~real[a] | ~real[b]
+        return cls(a[smooth], b[smooth], edges[pairs][smooth], len(mesh.triangles))
+
+    def pieces(self, chosen: Grid) -> NDArray[Any]:
+        """Return a number for each triangle `(count,)`, the same for those that such pairs of chosen triangles connect."""
+        inside = chosen[self.first] & chosen[self.second]
+        graph = coo_matrix((np.ones(int(inside.sum())), (self.first[inside], self.second[inside])), shape=(self.count, self.count))
+        return np.asarray(connected_components(graph, directed=False)[1])
+
+
+def _cylinders_within(mesh: TriMesh, normals: FloatArray, unit: FloatArray, chosen: Grid, smooth: _Smooth) -> list[_Piece]:
+    """Return the cylinders of a smooth surface that is more than one: a leg with a taper, a pin whose edge is rounded.
+
+    A cylinder bends along lines that are parallel to its axis, so the directions of most such lines are the candidates. Its facets are
+    `SLENDER` times as long as wide; those in which a sphere or a ring are drawn are not.
+    """
+    rows = chosen[smooth.first] & chosen[smooth.second] & ((unit[smooth.first] * unit[smooth.second]).sum(axis=1) < 1 - 1e-7)
+    lines = mesh.vertices[smooth.edges[rows, 1]] - mesh.vertices[smooth.edges[rows, 0]]
+    length = np.linalg.norm(lines, axis=1)
+    if not len(length):
+        return []
+    lines /= length[:, None]
+    lines *= np.where(lines[np.arange(len(lines)), np.abs(lines).argmax(axis=1)] < 0, -1.0, 1.0)[:, None]
+    ways, inverse = np.unique(np.round(lines, 3), axis=0, return_inverse=True)
+    total = np.bincount(inverse.ravel(), weights=length)
+    found: list[_Piece] = []
+    left = chosen.copy()
+    for way in np.argsort(-total)[:AXES]:
+        axis = ways[way] / np.linalg.norm(ways[way])
+        around = left & (np.abs(unit @ axis) < UPRIGHT)
+        numbers = smooth.pieces(around)
+        for number in dict.fromkeys(numbers[around].tolist()):
+            face = around & (numbers == number)
+            piece = _cylinder(mesh, normals[face], mesh.triangles[face])
+            if piece is not None and piece.is_slender():
+                found.append(piece)
+                left &= ~face
+    return found
 
 
 def _cylinder(mesh: TriMesh, normals: FloatArray, triangles: NDArray[Any]) -> _Piece | None:
@@ -223,20 +291,56 @@ def boxes_by_faces(mesh: TriMesh, directions: int = BOX_DIRECTIONS) -> list[Floa
     """Return the sides of boxes around a shape in the frames that its faces suggest, each `(3,)` ascending [mm].
 
     For each of the directions in which most area faces: the height along it, and the least rectangle around the shape seen that way,
-    as well as the rectangles along the other directions that are perpendicular to it.
+    as well as the rectangles along the other directions that are perpendicular to it. Lines from one round hole or stud to another that
+    is parallel to it are such directions, too: a bar is measured along its eyes.
     """
-    normals = mesh.normals_of_twice_area
-    area = np.linalg.norm(normals, axis=1)
-    unit = normals[area > 0] / area[area > 0, None]
-    sign = np.where(unit[np.arange(len(unit)), np.abs(unit).argmax(axis=1)] < 0, -1.0, 1.0)
-    facing, inverse = np.unique(np.round(unit * sign[:, None], 3), axis=0, return_inverse=True)
-    total = np.bincount(inverse.ravel(), weights=area[area > 0])
-    main = [way / np.linalg.norm(way) for way in facing[np.argsort(-total)[:directions]]]
+    main = _facing(mesh, directions)
+    lines = _between(rounds(mesh))
     try:
         points = mesh.vertices[ConvexHull(mesh.vertices).vertices]
     except QhullError:
         return []
-    return [box for way in main for box in _boxes_along(points, way, main)]
+    return [box for way in main for box in _boxes_along(points, way, [*main, *lines])]
+
+
+def _facing(mesh: TriMesh, directions: int) -> list[FloatArray]:
+    """Return the directions in which most area faces, whichever frame the mesh is in; no more than these.
+
+    Facets of one round face have the same area each: none is a direction if not all of them can be.
+    """
+    normals = mesh.normals_of_twice_area
+    area = np.linalg.norm(normals, axis=1)
+    unit, area = normals[area > 0] / area[area > 0, None], area[area > 0]
+    unit *= np.where(unit[np.arange(len(unit)), np.abs(unit).argmax(axis=1)] < 0, -1.0, 1.0)[:, None]
+    _, inverse = np.unique(np.round(unit, 3), axis=0, return_inverse=True)
+    ways = np.stack([np.bincount(inverse.ravel(), weights=area * unit[:, i]) for i in range(3)], axis=1)
+    left = np.linalg.norm(ways, axis=1)
+    ways /= left[:, None]
+    found: list[tuple[float, FloatArray]] = []
+    while len(found) < 3 * directions and left.any():  # of what rounding splits, each is less than the whole
+        along = ways @ ways[left.argmax()]
+        same = (np.abs(along) > 1 - SAME_WAY) & (left > 0)
+        way = (ways[same] * (np.sign(along[same]) * left[same])[:, None]).sum(axis=0)
+        found.append((float(np.linalg.norm(way)), way / np.linalg.norm(way)))
+        left[same] = 0
+    found.sort(key=lambda pair: -pair[0])
+    least = found[directions][0] * (1 + SAME_AREA) if len(found) > directions else 0.0
+    return [way for size, way in found[:directions] if size > least]
+
+
+def _between(found: Sequence[Round]) -> list[FloatArray]:
+    """Return the directions from one axis to another that is parallel to it, each once; none if there are more than `EYES`."""
+    lines: list[FloatArray] = []
+    for index, a in enumerate(found):
+        for b in found[:index]:
+            apart = b.centre - a.centre
+            across = apart - float(apart @ a.axis) * a.axis
+            length = float(np.linalg.norm(across))
+            if length < SAME_MM or abs(float(a.axis @ b.axis)) < 1 - 1e-6:
+                continue
+            if all(abs(float(across @ line)) < (1 - 1e-9) * length for line in lines):
+                lines.append(across / length)
+    return lines if len(lines) <= EYES else []
 
 
 def _boxes_along(points: FloatArray, way: FloatArray, others: Sequence[FloatArray]) -> list[FloatArray]:
@@ -316,7 +420,7 @@ def _grid(meshes: Sequence[TriMesh], cells: int) -> tuple[FloatArray, float, tup
     low = np.min([mesh.bounds[0] for mesh in meshes], axis=0)
     high = np.max([mesh.bounds[1] for mesh in meshes], axis=0)
     pitch = float((high - low).max()) / cells
-    nx, ny, nz = (max(1, math.ceil(side / pitch - 1e-9)) for side in high - low)
+    nx, ny, nz = (max(1, math.ceil(side / pitch - GRID_ROUNDING)) for side in high - low)
     return (low + high) / 2 - np.array([nx, ny, nz]) * pitch / 2, pitch, (nx, ny, nz)
 
 

@@ -91,15 +91,15 @@ class Subject:
         return np.sort(np.ptp(mesh.vertices, axis=0)) if mesh is not None else np.zeros(3)
 
     def boxes(self, part: str) -> FloatArray:
-        """Return a part's sides in its own frame, at rest, and in the frames that its faces suggest; each row ascends `(n, 3)` [mm].
+        """Return a part's sides at rest, and in the frames that its faces suggest; each row ascends `(n, 3)` [mm].
 
-        A tool may choose any frame for a part, so the sides in its own frame alone say nothing.
+        A tool may choose any frame for a part, so the sides in its own frame say nothing.
         """
         if part not in self._boxes:
             mesh = self.assembly.parts[part].mesh
             assert mesh is not None
             turned = mesh.vertices @ self.rest[part].rotation.T
-            rows = [self.extents(part), np.sort(np.ptp(turned, axis=0)), *boxes_by_faces(mesh)]
+            rows = [np.sort(np.ptp(turned, axis=0)), *boxes_by_faces(mesh)]
             self._boxes[part] = np.array(rows)
         return self._boxes[part]
 

@@ -10,8 +10,8 @@ import pytest
 from articad.arrays import FloatArray
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged
-from articad.geometry.shapes import sphere, tube
-from articad_bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
+from articad.geometry.shapes import capsule, sphere, tube
+from articad_bench.solids import Round, asymmetry, boxes_by_faces, held_volume, occupied, rounds, tipping_angle, wall_thickness
 
 TURNS = [SE3.identity(), SE3.from_axis_angle(np.array([0.3, 0.5, 0.8]), 1.1) @ SE3.from_translation(np.array([40.0, -7.0, 3.0]))]
 
@@ -27,7 +27,11 @@ def test_a_tube_has_one_hole_and_one_stud_of_its_radii_and_length(placing: SE3, 
     assert not any(r.blind for r in found)
 
 
-@pytest.mark.parametrize("shape", [box(10, 20, 30), sphere(12), cylinder(10, 20, 8)], ids=["box", "sphere", "eight-sided prism"])
+@pytest.mark.parametrize(
+    "shape",
+    [box(10, 20, 30), sphere(12), sphere(12, 31), cylinder(10, 20, 8)],
+    ids=["box", "sphere", "sphere with a belt", "eight-sided prism"],
+)
 def test_what_is_not_round_has_no_holes_and_no_studs(shape: TriMesh) -> None:
     assert rounds(TriMesh(shape.vertices, shape.triangles)) == []
 
@@ -74,6 +78,35 @@ def test_two_holes_of_one_size_whose_halves_alternate_are_two() -> None:
     found = rounds(TriMesh(both.vertices, both.triangles[order], np.concatenate([halves, halves + 6])[order]))
 
     assert sorted((r.hollow, round(r.radius, 6)) for r in found) == [(False, 10)] * 2 + [(True, 6)] * 2
+
+
+@pytest.mark.parametrize("placing", TURNS)
+def test_a_pin_with_round_ends_is_a_stud_though_its_surface_bends_nowhere_sharply(placing: SE3) -> None:
+    shape = capsule(6, 40).transformed(placing)
+
+    (found,) = rounds(TriMesh(shape.vertices, shape.triangles))
+
+    assert (round(found.radius, 6), round(found.length, 6), found.hollow) == (6, 40, False)
+    assert abs(float(found.axis @ placing.z_axis)) == pytest.approx(1)
+
+
+def test_coordinates_of_single_precision_have_the_same_grid() -> None:
+    """The middles of 46 cells over 180 mm would lie in the faces of a board that is as wide, in one and beside the other."""
+    exact, rounded = (occupied([box(400 + error, 180 + error, 100)])[0] for error in (0.0, 8e-6))
+
+    assert rounded.shape == exact.shape == (100, 45, 25)
+
+
+def test_a_plate_is_measured_along_the_line_of_two_eyes() -> None:
+    """The least rectangle around three eyes is along the shorter sides of their triangle; what is stated is the longest one, 260 + 2 · 11."""
+    turned = SE3.rot_z(0.05)
+    eyes = [
+        cylinder(11, 5).transformed(SE3.from_translation(turned.apply(np.array([x, y, 0.0])))) for x, y in ((0, 0), (260, 0), (130, 150))
+    ]
+
+    found = boxes_by_faces(merged(eyes))
+
+    assert any(np.allclose(sides, [5, 172, 282], rtol=0.002) for sides in found)
 
 
 def _kind(mesh: TriMesh) -> FloatArray:

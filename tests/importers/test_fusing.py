@@ -1,4 +1,4 @@
-"""Loops of MJCF files of other tools: with fuse, points and welded bodies without shape become the joint that they represent."""
+"""With fuse, files of other tools have the joints that chains, points and welded bodies without shape represent, and their couplings."""
 
 from __future__ import annotations
 
@@ -9,9 +9,12 @@ import pytest
 
 from articad.assembly import Assembly
 from articad.export.mjcf import write_mjcf
+from articad.export.urdf import write_urdf
 from articad.importers.mjcf import read_mjcf
-from articad.kinematics.joints import Joint, JointType
-from tests.assemblies import closed, four_bar
+from articad.importers.urdf import read_urdf
+from articad.kinematics import declare
+from articad.kinematics.joints import Coupling, Joint, JointType
+from tests.assemblies import block, closed, four_bar, frame
 from tests.export.test_loops import KINDS
 
 pytestmark = pytest.mark.engines
@@ -93,3 +96,45 @@ def test_points_of_different_bodies_are_no_hinge(tmp_path: Path) -> None:
     path.write_text(linked(POINTS.format("a", "0 1 0.1")))
 
     assert [joint.type for joint in read_mjcf(path, fuse=True).joints if joint.closing] == [JointType.BALL] * 2
+
+
+@pytest.mark.parametrize("form", ["urdf", "mjcf"])
+def test_screws_that_follow_one_another_still_do(form: str, tmp_path: Path) -> None:
+    base = block("base", (80, 20, 20), left=frame(at=(0, 0, 20)), right=frame(at=(50, 0, 20)), crank=frame(at=(-50, 0, 20)))
+    parts = [block(name, root=frame()) for name in ("left", "right", "crank")]
+    left, right, crank = (part["root"] for part in parts)
+    joints = [
+        declare.revolute("crank", base["crank"], crank, limits=(-20.0, 20.0), driver=True),
+        declare.screw("right", base["right"], right, lead=-2.0, limits=(-9.0, 9.0), mate="opposed"),
+        declare.screw("left", base["left"], left, lead=3.0, limits=(-9.0, 9.0)),
+    ]
+    couplings = [Coupling("a", "gear", "crank", "right", -0.5), Coupling("b", "gear", "right", "left", 1.5)]
+    first = Assembly.from_parts("vice", parts=[base, *parts], joints=joints, couplings=couplings, ground="base")
+    (write_urdf if form == "urdf" else write_mjcf)(first, collision="solid").write(tmp_path)
+    file = tmp_path / ("vice.urdf" if form == "urdf" else "vice.xml")
+
+    second = (read_urdf if form == "urdf" else read_mjcf)(file, metadata=False, fuse=True)
+
+    leads = {joint.name: joint.lead for joint in second.joints if joint.type is JointType.SCREW}
+    assert leads == {"right": pytest.approx(-2.0), "left": pytest.approx(3.0)}
+    assert second.mechanism.mobility == 1
+    (driver,) = second.drivers
+    turn = {"crank": 2.0, "right": -1.0, "left": -1.5}[driver.name]
+    for name in ("left", "right", "crank"):  # parts may have other frames, so their motion is compared
+        moved, wanted = second.at(**{driver.name: turn})[name], first.at(crank=2.0)[name]
+        assert (moved @ second.at()[name].inverse()).allclose(wanted @ first.at()[name].inverse(), mm=1e-6, rad=1e-8)
+
+
+def test_joints_with_actuators_drive_a_linkage_but_for_those_that_follow(tmp_path: Path) -> None:
+    """Both ends of the crossbar have a motor; the bars between them follow."""
+    path = tmp_path / "m.xml"
+    motors = '<motor name="{0}" joint="{0}"/>'
+    text = linked(POINTS.format("b", "0 1 0.1"))
+    drivers = []
+    for joints in ((), ("jc",), ("jc", "ja")):
+        path.write_text(text.replace("</mujoco>", f"<actuator>{''.join(map(motors.format, joints))}</actuator></mujoco>"))
+        assembly = read_mjcf(path, fuse=True)
+        assert not assembly.mechanism.findings().errors
+        drivers.append([driver.joint for driver in assembly.drivers])
+
+    assert drivers == [["ja"], ["jc"], ["ja"]]

@@ -1,0 +1,71 @@
+"""What file formats cannot state, and the checks that a file of such a format cannot meet therefore.
+
+Another tool's file is judged by what it states alone. The rules are the only place that excuses a format; the how-to shows them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Final, Literal, NamedTuple
+
+from articad.kinematics.joints import JointType
+from articad_bench.checks import Joints, Loops
+from articad_bench.task import Task
+
+Asked = Literal["motion", "loop", "cone"]
+"""What a product has: joints that move, a closed loop, a ball whose cone is limited and whose twist has a range of its own."""
+
+_MOTION: Final = frozenset(
+    {"freedoms", "joints", "loops", "ratio", "rise", "travel", "straight", "level", "turns", "links", "gap", "moves"}
+) | {"made", "captive", "clear_in_motion", "certified", "simulates"}
+
+
+class Unsaid(NamedTuple):
+    """A rule.
+
+    Attributes:
+        format: Format of a file.
+        asked: What it cannot state.
+        kinds: Kinds of the checks that cannot hold where this is asked for.
+        why: The reason, a sentence.
+    """
+
+    format: Literal["urdf", "mjcf", "step"]
+    asked: Asked
+    kinds: frozenset[str]
+    why: str
+
+
+UNSAID: Final = (
+    Unsaid("urdf", "loop", _MOTION, "URDF holds trees of joints: the joint that closes a loop is missing."),
+    Unsaid(
+        "mjcf",
+        "cone",
+        frozenset({"joints", "travel", "clear_in_motion", "certified"}),
+        "MJCF limits the total angle of a ball, not cone and twist.",
+    ),
+    Unsaid("step", "motion", _MOTION | {"lead", "threads"}, "STEP holds no joints."),
+)
+
+_FORMATS: Final = {".urdf": "urdf", ".xml": "mjcf", ".mjcf": "mjcf", ".step": "step", ".stp": "step"}
+
+
+def format_of(suffix: str) -> str:
+    """Return the format that a file's ending says, "" for one that no rule names."""
+    return _FORMATS.get(suffix.lower(), "")
+
+
+def asked_for(task: Task) -> set[Asked]:
+    """Return what the checks of a task ask for."""
+    found: set[Asked] = {"motion"} if task.moves else set()
+    for check in task.checks:
+        if isinstance(check, Loops) and check.number[0] >= 1:
+            found.add("loop")
+        if isinstance(check, Joints) and check.joint.type is JointType.BALL and check.joint.span not in {None, "endless"}:
+            found.add("cone")
+    return found
+
+
+def unsaid(form: str, asked: Collection[Asked]) -> dict[str, str]:
+    """Return the kinds of checks that cannot hold in a format, each with the reason."""
+    return {kind: rule.why for rule in UNSAID if rule.format == form and rule.asked in asked for kind in rule.kinds}
