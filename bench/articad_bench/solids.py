@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any, Final
 
 import numpy as np
@@ -33,8 +34,7 @@ SLENDER: Final = 3.0  # length of a facet by its width
 SAMPLES: Final = 200  # points of a surface at which a wall is measured
 BOX_DIRECTIONS: Final = 8  # in which most of a surface faces
 SAME_WAY: Final = 1e-6  # by which the cosine of the angle between normals of one direction is less than one
-SAME_AREA: Final = 0.01  # share by which the areas of facets of one round face differ
-EYES: Final = 10  # lines from one hole or stud to another; a plate with more is not measured along them
+ALIKE: Final = 0.01  # share by which areas of facets of one round face differ, or distances between eyes that are taken for equal
 GRID_ROUNDING: Final = 1e-4  # of a cell: coordinates of single precision make no other number of cells
 CELLS: Final = 100  # along the longest side, where volumes are counted
 FLAT_CELLS: Final = 64  # above one another, where it matters how high water stands
@@ -160,11 +160,11 @@ def _cylinders_within(mesh: TriMesh, normals: FloatArray, unit: FloatArray, chos
     `SLENDER` times as long as wide; those in which a sphere or a ring are drawn are not.
     """
     rows = chosen[smooth.first] & chosen[smooth.second] & ((unit[smooth.first] * unit[smooth.second]).sum(axis=1) < 1 - 1e-7)
-    lines = mesh.vertices[smooth.edges[rows, 1]] - mesh.vertices[smooth.edges[rows, 0]]
+    lines: FloatArray = mesh.vertices[smooth.edges[rows, 1]] - mesh.vertices[smooth.edges[rows, 0]]
     length = np.linalg.norm(lines, axis=1)
     if not len(length):
         return []
-    lines /= length[:, None]
+    lines = lines / length[:, None]
     lines *= np.where(lines[np.arange(len(lines)), np.abs(lines).argmax(axis=1)] < 0, -1.0, 1.0)[:, None]
     ways, inverse = np.unique(np.round(lines, 3), axis=0, return_inverse=True)
     total = np.bincount(inverse.ravel(), weights=length)
@@ -291,11 +291,11 @@ def boxes_by_faces(mesh: TriMesh, directions: int = BOX_DIRECTIONS) -> list[Floa
     """Return the sides of boxes around a shape in the frames that its faces suggest, each `(3,)` ascending [mm].
 
     For each of the directions in which most area faces: the height along it, and the least rectangle around the shape seen that way,
-    as well as the rectangles along the other directions that are perpendicular to it. Lines from one round hole or stud to another that
-    is parallel to it are such directions, too: a bar is measured along its eyes.
+    as well as the rectangles along the other directions that are perpendicular to it. The line between the two round holes or studs that
+    lie farthest apart is such a direction, too: a bar is measured along its eyes.
     """
     main = _facing(mesh, directions)
-    lines = _between(rounds(mesh))
+    lines = _along_eyes(rounds(mesh))
     try:
         points = mesh.vertices[ConvexHull(mesh.vertices).vertices]
     except QhullError:
@@ -313,9 +313,9 @@ def _facing(mesh: TriMesh, directions: int) -> list[FloatArray]:
     unit, area = normals[area > 0] / area[area > 0, None], area[area > 0]
     unit *= np.where(unit[np.arange(len(unit)), np.abs(unit).argmax(axis=1)] < 0, -1.0, 1.0)[:, None]
     _, inverse = np.unique(np.round(unit, 3), axis=0, return_inverse=True)
-    ways = np.stack([np.bincount(inverse.ravel(), weights=area * unit[:, i]) for i in range(3)], axis=1)
+    ways: FloatArray = np.stack([np.bincount(inverse.ravel(), weights=area * unit[:, i]) for i in range(3)], axis=1)
     left = np.linalg.norm(ways, axis=1)
-    ways /= left[:, None]
+    ways = ways / left[:, None]
     found: list[tuple[float, FloatArray]] = []
     while len(found) < 3 * directions and left.any():  # of what rounding splits, each is less than the whole
         along = ways @ ways[left.argmax()]
@@ -324,23 +324,21 @@ def _facing(mesh: TriMesh, directions: int) -> list[FloatArray]:
         found.append((float(np.linalg.norm(way)), way / np.linalg.norm(way)))
         left[same] = 0
     found.sort(key=lambda pair: -pair[0])
-    least = found[directions][0] * (1 + SAME_AREA) if len(found) > directions else 0.0
+    least = found[directions][0] * (1 + ALIKE) if len(found) > directions else 0.0
     return [way for size, way in found[:directions] if size > least]
 
 
-def _between(found: Sequence[Round]) -> list[FloatArray]:
-    """Return the directions from one axis to another that is parallel to it, each once; none if there are more than `EYES`."""
-    lines: list[FloatArray] = []
-    for index, a in enumerate(found):
-        for b in found[:index]:
-            apart = b.centre - a.centre
-            across = apart - float(apart @ a.axis) * a.axis
-            length = float(np.linalg.norm(across))
-            if length < SAME_MM or abs(float(a.axis @ b.axis)) < 1 - 1e-6:
-                continue
-            if all(abs(float(across @ line)) < (1 - 1e-9) * length for line in lines):
-                lines.append(across / length)
-    return lines if len(lines) <= EYES else []
+def _along_eyes(found: Sequence[Round]) -> list[FloatArray]:
+    """Return the direction between the two parallel axes that lie farthest apart; none if others lie as far apart another way."""
+    lines = []
+    for a, b in combinations(found, 2):
+        apart = b.centre - a.centre
+        across = apart - float(apart @ a.axis) * a.axis
+        if (length := float(np.linalg.norm(across))) > SAME_MM and abs(float(a.axis @ b.axis)) > 1 - 1e-6:
+            lines.append((length, across / length))
+    longest, way = max(lines, key=lambda line: line[0], default=(0.0, np.zeros(3)))
+    others = [line for length, line in lines if length > (1 - ALIKE) * longest]
+    return [way] if lines and all(abs(float(line @ way)) > 1 - SAME_WAY for line in others) else []
 
 
 def _boxes_along(points: FloatArray, way: FloatArray, others: Sequence[FloatArray]) -> list[FloatArray]:
