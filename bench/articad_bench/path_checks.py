@@ -59,19 +59,25 @@ class Level(Check):
 
 
 class Turns(Check):
-    """A number of parts turn `ratio` times as fast as some other part, in the frame of the whole, about parallel axes, all the way."""
+    """A number of parts turn `ratio` times as fast as some other part, in the frame of the whole, about parallel axes, all the way.
+
+    `longer` requires that they are the longer ones of both, or the shorter ones, by the longest side.
+    """
 
     kind: Literal["turns"] = "turns"
     ratio: float
     number: Bounds = (1, 999)
     tolerance: float = 0.005
+    longer: bool | None = None
 
     @property
     def wanted(self) -> str:
-        return f"{in_words(self.number)} parts turn {self.ratio:g} times as fast as another, within {100 * self.tolerance:g} %"
+        told = "" if self.longer is None else " longer" if self.longer else " shorter"
+        return f"{in_words(self.number)}{told} parts turn {self.ratio:g} times as fast as another, within {100 * self.tolerance:g} %"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         best, told = 0, "nothing turns"
+        length = np.array([subject.boxes(name).max() for name in _shaped(subject)]) if self.longer is not None else np.empty(0)
         for speeds in _speeds(subject):
             size = np.linalg.norm(speeds, axis=2)
             for column in range(speeds.shape[1]):
@@ -79,16 +85,24 @@ class Turns(Check):
                     continue
                 wanted = self.ratio * speeds[:, column, None]
                 off = np.linalg.norm(speeds - wanted, axis=2) / np.linalg.norm(wanted, axis=2)
-                count = int(np.sum(off.max(axis=0) <= self.tolerance))
+                alike = off.max(axis=0) <= self.tolerance
+                if self.longer is not None:
+                    alike &= (length > length[column]) == self.longer
+                count = int(np.sum(alike))
                 if count > best or told == "nothing turns":
                     best, told = count, ", ".join(f"{s:.4g}" for s in size.mean(axis=0) / size[:, column].mean())
         return self.number[0] <= best <= self.number[1], f"{best} ({told})"
 
 
+def _shaped(subject: Subject) -> list[str]:
+    """Return the parts that have a shape, in the order of poses."""
+    return [name for name in subject.assembly.mechanism.parts if name in subject.shaped]
+
+
 def _speeds(subject: Subject) -> Iterator[FloatArray]:
     """Yield how fast the shaped parts turn, per unit of each driver, at places along its range `(SPEEDS, parts, 3)`."""
     assembly = subject.assembly
-    rows = [row for row, name in enumerate(assembly.mechanism.parts) if name in subject.shaped]
+    rows = [assembly.mechanism.parts.index(name) for name in _shaped(subject)]
     for column, driver in enumerate(assembly.drivers):
         reached = subject.driver_range(driver.name)
         if reached is None:

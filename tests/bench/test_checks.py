@@ -16,7 +16,7 @@ from articad import examples
 from articad.assembly import Assembly
 from articad.connectors import SE3
 from articad.geometry import Part, box
-from articad.kinematics.joints import Joint, JointLimits
+from articad.kinematics.joints import Coupling, Joint, JointLimits
 from articad.plan.schema import AssemblyPlan
 from articad_bench.checks import AnyCheck, Check
 from articad_bench.reference import reference
@@ -163,6 +163,18 @@ def test_what_a_joint_moves_does_not_depend_on_which_side_is_its_child(ends: tup
     }
 
     assert found == {"handle": True, "lid": closed, "base": False}
+
+
+def test_which_of_two_coupled_parts_turns_faster_is_told_by_their_lengths() -> None:
+    """The small one turns twice as fast as the large one."""
+    joints = [joint(name, "revolute", ("base", at(x)), (name, at(0)), limits=[(-9.0, 9.0)]) for name, x in (("large", 0), ("small", 40))]
+    parts = [Part.from_mesh(name, box(side, 5, 5), density=1000) for name, side in (("base", 90), ("large", 20), ("small", 8))]
+    couplings = [Coupling("mesh", "gear", "large", "small", 2.0)]
+    subject = Subject(Assembly.from_parts("hands", parts=parts, joints=joints, couplings=couplings, ground="base"))
+
+    found = {longer: form({"kind": "turns", "ratio": 2.0, "longer": longer}).judge(subject).ok for longer in (None, False, True)}
+
+    assert found == {None: True, False: True, True: False}
 
 
 def test_a_ball_goes_from_side_to_side_of_its_cone() -> None:
