@@ -151,10 +151,13 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
 
 
 LOOKED: Final[Mapping[str, str]] = {
+    "run:mirrored": "The rail is longer than the space between the sides of the carcass, which is one piece, and its ends are in blind sockets; the doors' pins, above and below, "
+    "are in blind holes of top and shelf, as the plan says.",
     "run:phone_holder": "The holder's ball is in a closed socket of the arm that reaches over more than half of it; a workshop snaps it in, or makes the socket of two halves.",
     "run:pliers": "The lever is one piece of two cheeks and the pins between them, which pass through closed eyes of the lower jaw and of the strut.",
     "run:stool": "Each leg frame is one piece with the rods between its legs, and the rods lie in closed eyes of the seat's lugs and of the braces; the rod of the outer frame "
     "passes through closed bores of the inner legs.",
+    "run:toy": "Each shaft is one piece with a wheel inside the body that is wider than the closed bores, and the crankshafts with webs outside; the body is one piece.",
     "metronome": "The case is one hollow piece around its nut and its barrel.",
     "scissor_lift": "Each frame is one piece of two arms and their cross rods, and the rods lie in closed eyes of the other frames, inside its own two arms.",
     "slider_crank": "The rod's eye is one closed piece about the crank pin, and the piston stays in its cylinder at every angle of the crank, so that the eye "
