@@ -16,6 +16,7 @@ from typing import Any, Final
 
 from pydantic import ValidationError
 
+from articad.errors import PlanError
 from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.plan import reading
@@ -57,7 +58,10 @@ def further_findings(path: Path, found: Findings) -> Findings:
         return found
     if not isinstance(document, dict):
         return found
-    mended = _Mended(expanded(document, functions_of(document, file)))
+    try:
+        mended = _Mended(expanded(document, functions_of(document, file)))
+    except PlanError:  # it cannot be written out, which is among the findings
+        return found
     plan = mended.plan()
     if plan is None:
         return found

@@ -154,7 +154,8 @@ class Evaluation:
         if re.search(rf"\b{name}\b", value):  # it is made of the missing parameter itself
             return None
         simple = expression == name or re.fullmatch(r"[\w.]+", value)
-        written = re.sub(rf"\b{name}\b", value if simple else f"({value})", expression)
+        meant = value if simple else f"({value})"
+        written = re.sub(rf"\b{name}\b", lambda _: meant, expression)
         message = f"{expression!r} cannot be read: {name} is a dimension of {part.name}, and expressions see parameters only."
         return ExpressionError("E_EXPRESSION", message, f"Write it in parameters: {written!r}.")
 

@@ -2,36 +2,57 @@
 
 from __future__ import annotations
 
+import copy
+import json
+from collections.abc import Mapping
 from typing import Any, Final
 
 from articad.aliases import Json
+from articad.errors import PlanError
+from articad.findings import Finding
 from articad.plan.short_texts import by_name
 
 SIDES: Final = (("_l", "_r"), ("_left", "_right"))
 """Ends of names of what stands on one side, and of its mirror image."""
+MOST_COPIED: Final = 2_000_000
+"""Characters of JSON that likenesses may repeat in a plan; a thousand parts repeat 0.2 million."""
 _AXES: Final = ("x", "y", "z")
 _OWN: Final = frozenset({"name", "rest_pose", "driver", "like"})  # not repeated in what is like it
 
 
 def alike(entries: Any) -> Any:
-    """Give each entry `{"like": NAME}` the fields of the entry of that name, but its place, its name and whether it is driven, unless it states them."""
-    known = by_name(entries)
+    """Give each entry `{"like": NAME}` the fields of the entry of that name, but its place, its name and whether it is driven, unless it states them.
+
+    Raises:
+        PlanError: If more than `MOST_COPIED` characters are repeated.
+    """
+    known, room = by_name(entries), MOST_COPIED
     for name in known:
-        _follow(name, known, ())
+        chain = dict.fromkeys([name])  # each is like the next
+        while (source := _source(known[next(reversed(chain))], known)) is not None and source not in chain:
+            chain[source] = None
+        for follower in reversed(chain):
+            source = _source(known[follower], known)
+            if source is None or "like" in known[source]:
+                continue  # stays, and reading the plan reports it
+            entry = known[follower]
+            del entry["like"]
+            copied = {key: value for key, value in known[source].items() if key not in _OWN and key not in entry}
+            room -= len(json.dumps(copied))
+            if room < 0:
+                message = f"What is like other parts or joints would repeat more than {MOST_COPIED} characters of them."
+                finding = Finding(
+                    code="E_SCHEMA", where=follower, message=message, hint="Let fewer be like others, or state less of those."
+                )
+                raise PlanError(message, findings=[finding])
+            entry |= copy.deepcopy(copied)
     return entries
 
 
-def _follow(name: str, known: dict[str, Json], path: tuple[str, ...]) -> None:
-    entry = known[name]
+def _source(entry: Json, known: Mapping[str, Json]) -> str | None:
+    """Return the name of what an entry is like; None if it is like nothing that is known."""
     source = entry.get("like")
-    if not isinstance(source, str) or source not in known or source in (*path, name):
-        return  # stays, and reading the plan reports it
-    _follow(source, known, (*path, name))
-    if "like" in known[source]:
-        return
-    del entry["like"]
-    own = dict(entry)
-    entry |= {key: value for key, value in known[source].items() if key not in _OWN and key not in own}
+    return source if isinstance(source, str) and source in known else None
 
 
 def plane_of(plan: Json) -> Json | None:
@@ -54,17 +75,17 @@ def add_mirror_images(plan: Json) -> None:
         return
     del plan["mirror"]
     parts, joints = by_name(plan["parts"]), by_name(plan["joints"])
-    for name in parts:
+    images: dict[int, Json] = {}  # by the id of what they stand behind
+    for name, part in parts.items():
         if (image := image_name(name)) and image not in parts:
-            _insert(plan["parts"], parts[name], {"name": image, "derive": {"from": name, "op": "mirror", "plane": plane}})
+            images[id(part)] = {"name": image, "derive": {"from": name, "op": "mirror", "plane": plane}}
     for name, joint in joints.items():
         if (image := image_name(name)) and image not in joints and "derive" not in joint:
             ends = {side: _other_side(joint.get(side)) for side in ("parent", "child")}
-            _insert(plan["joints"], joint, {"name": image, "derive": {"from": name, "op": "mirror"}, **ends})
-
-
-def _insert(entries: list[Any], after: Json, image: Json) -> None:
-    entries.insert(next(index for index, entry in enumerate(entries) if entry is after) + 1, image)
+            images[id(joint)] = {"name": image, "derive": {"from": name, "op": "mirror"}, **ends}
+    for entries in (plan["parts"], plan["joints"]):
+        if isinstance(entries, list):
+            entries[:] = [held for entry in entries for held in ([entry, images[id(entry)]] if id(entry) in images else [entry])]
 
 
 def _other_side(reference: Any) -> Any:

@@ -27,7 +27,8 @@ class Joints:
 
     def add_pins(self) -> None:
         """Add the pin of each hinge that turns on one, `"by": PIN`, and the joint that fixes it in the parent."""
-        for joint in list(self.joints.values()):
+        fixing: dict[int, Json] = {}  # joints by the id of the hinge that they stand before
+        for joint in self.joints.values():
             pin = joint.get("by")
             if joint.get("type") != "hinge" or not isinstance(pin, str) or pin in self.joints or not isinstance(self._plan["parts"], list):
                 continue  # stays, and reading the plan reports it
@@ -35,11 +36,13 @@ class Joints:
             if part is None:
                 part = {"name": pin, "material": "steel", "description": "Pin.", "rest_pose": {"at": AT_JOINT}, "connectors": []}
                 self._plan["parts"].append(part)
-            press, dimensions = pin_of(joint, pin)
+            fixing[id(joint)], dimensions = pin_of(joint, pin)
             if isinstance(held := part.setdefault("dimensions", {}), dict):
                 held.update(dimensions)
-            joints = self._plan["joints"]
-            joints.insert(next(index for index, entry in enumerate(joints) if entry is joint), press)
+        if fixing:
+            self._plan["joints"] = [
+                held for joint in self._plan["joints"] for held in ([fixing[id(joint)], joint] if id(joint) in fixing else [joint])
+            ]
         self._read()
 
     def place(self) -> None:
@@ -171,7 +174,7 @@ def _image(place: Json | None, derive: Any) -> Json | None:
 def _is_number(value: Any) -> bool:
     try:
         return math.isfinite(float(value))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return False
 
 

@@ -34,20 +34,19 @@ _WORDS: Final = frozenset({"endless", "auto", "child", "parent", "opposed", "ali
 _PART_KEYS: Final = frozenset({"material", "at", "turn", "like", "color", "envelope"})
 AT_JOINT: Final = "joint"
 """As the place of a part: the origin of its frame is where the first joint is that has it as its child."""
-_NUMBER: Final = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_NUMBER: Final = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?")
 _SIMPLE: Final = re.compile(r"\w+")
 
 
 def split(text: str, mark: str = ",") -> list[str]:
     """Return the pieces of a text between marks that stand outside of parentheses, without spaces around them."""
-    pieces, depth = [""], 0
-    for letter in text:
+    pieces, depth, start = [], 0, 0
+    for place, letter in enumerate(text):
         depth += (letter == "(") - (letter == ")")
         if letter == mark and depth == 0:
-            pieces.append("")
-        else:
-            pieces[-1] += letter
-    return [piece.strip() for piece in pieces]
+            pieces.append(text[start:place])
+            start = place + 1
+    return [piece.strip() for piece in (*pieces, text[start:])]
 
 
 def number(text: str) -> Any:

@@ -164,14 +164,17 @@ def feature_of(dimension: str, dimensions: Container[str], connectors: Iterable[
 
 def _wider(size: Any, clearance: Any) -> Any:
     if isinstance(size, int | float) and isinstance(clearance, int | float):
-        return round(size + 2 * clearance, 9)
+        return _sum(size, 2 * clearance)
     return f"({size})+2*({clearance})" if clearance else size
 
 
 def _sum(size: Any, more: Any) -> Any:
-    if isinstance(size, int | float) and isinstance(more, int | float):
+    if not (isinstance(size, int | float) and isinstance(more, int | float)):
+        return f"({size})+({more})" if more else size
+    try:
         return round(size + more, 9)
-    return f"({size})+({more})" if more else size
+    except OverflowError:  # a whole number larger than any float: reading the plan reports it
+        return max(size, more, key=abs)
 
 
 __all__ = ["CLEARANCE_MM", "CUT", "FEATURES", "STANDARD", "feature_of", "is_pin", "made_of", "pin_of"]

@@ -107,6 +107,17 @@ CASES = [
         "half is a dimension of box, and expressions see parameters only. Write it in parameters: '-2 * (width / 8)'.",
     ),
     Case(
+        "E_EXPRESSION",
+        chest_with(
+            lambda p: (
+                connector(p, "box", "hinge").update(o=["half + 1", 100, 80])
+                or part(p, "box").setdefault("dimensions", {}).update(half="\\g<9>")
+            )
+        ),
+        "parts.box.connectors.hinge.o[0]",
+        "expressions see parameters only. Write it in parameters: '(\\\\g<9>) + 1'.",
+    ),
+    Case(
         "E_NAME",
         chest_with(
             lambda p: (

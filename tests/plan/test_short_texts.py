@@ -6,6 +6,7 @@ import contextlib
 import copy
 import json
 import math
+import time
 from pathlib import Path
 from typing import Any
 
@@ -330,6 +331,85 @@ def test_a_likeness_to_nothing_is_reported(like: str) -> None:
     with pytest.raises(PlanError) as refused:
         AssemblyPlan.from_json(plan)
     assert "parts.arm_2.like" in {finding.where for finding in refused.value.findings}
+
+
+def test_what_is_like_another_shares_nothing_with_it() -> None:
+    """The pin and the connector of a joint are those of its own part, not of parts that are like it."""
+    plan = copy.deepcopy(ROD)
+    plan["parts"] |= {"arm": {"dimensions": {"thick": "t", "wide": 30}, "connectors": []}, "spare": "like arm"}
+    parts = {part["name"]: part for part in expanded(plan)["parts"]}
+    assert parts["spare"]["dimensions"] == {"thick": "t", "wide": 30}
+    assert parts["spare"]["connectors"] == []
+    assert [connector["name"] for connector in parts["arm"]["connectors"]] == ["turn"]
+
+
+def test_a_long_chain_of_likenesses_is_followed() -> None:
+    plan = {"schema": "articad.short/1", "parts": {"p0": "wide=1"} | {f"p{n}": f"like p{n - 1}" for n in reversed(range(1, 5000))}}
+    assert all(part["dimensions"] == {"wide": 1} for part in expanded(plan | {"joints": {}})["parts"])
+
+
+def test_likenesses_that_repeat_too_much_are_refused() -> None:
+    """500 dimensions of 2000 parts would be a million in a file of 40 kB."""
+    plan = copy.deepcopy(ROD)
+    plan["parts"] = {"p": ", ".join(f"d{n}=1" for n in range(500))} | {f"p{n}": "like p" for n in range(2000)}
+    with pytest.raises(PlanError, match="would repeat more than 2000000 characters"):
+        AssemblyPlan.from_json(plan)
+
+
+LONG_TEXTS = {
+    "digits": lambda: short_texts.number("1" * 500_000 + "x"),
+    "pieces": lambda: short_texts.split("a" * 2_000_000),
+    "images": lambda: expanded(
+        {"schema": "articad.short/1", "mirror": "x", "parts": {f"p{n}_l": "w=1" for n in range(20_000)}, "joints": {}}
+    ),
+    "pins": lambda: expanded(
+        {"schema": "articad.short/1", "parts": {}, "joints": {f"j{n}": f"hinge a b pin{n}; pin 4,9" for n in range(20_000)}}
+    ),
+}
+
+
+@pytest.mark.parametrize("text", LONG_TEXTS)
+def test_the_time_to_read_grows_with_the_length_not_with_its_square(text: str) -> None:
+    start = time.process_time()
+    LONG_TEXTS[text]()
+    assert time.process_time() - start < 5.0  # they took minutes
+
+
+DIGITS = 10**400
+LARGE: dict[str, Json] = {
+    **{
+        f"{kind}-{key}": {"type": kind, "parent": "post", "child": "arm", "at": [0, 0, 0], key: value}
+        for kind, key, value in (
+            ("hinge", "pin_mm", DIGITS),
+            ("drawer_slide", "bar_mm", [5, -DIGITS]),
+            ("ball_socket", "ball_mm", DIGITS),
+            ("pin_in_clevis", "eye_mm", DIGITS),
+        )
+    },
+    "blind": {"type": "hinge", "parent": "post", "child": "arm", "at": [0, 0, 0], "pin_mm": 8, "length_mm": DIGITS, "blind": True},
+}
+
+
+@pytest.mark.parametrize("joint", LARGE)
+def test_a_size_of_hundreds_of_digits_is_refused_in_words(joint: str) -> None:
+    plan = copy.deepcopy(ROD)
+    plan["joints"]["large"] = LARGE[joint]
+    assert "E_" in _refusal(plan)
+
+
+@pytest.mark.parametrize("plane", [{"point": [DIGITS, 0, 0], "normal": [1, 0, 0]}, {"point": [0, 0, 0], "normal": [DIGITS, 0, 0]}])
+def test_a_plane_of_hundreds_of_digits_is_refused_in_words(plane: Json) -> None:
+    plan = {"schema": "articad.short/1", "name": "x", "ground": "a", "freedoms": 2, "material": "oak", "mirror": plane}
+    plan["parts"] = {"a": "w=1", "b_l": "w=1", "b_r": "w=1"}
+    plan["joints"] = {"j_l": {"type": "revolute", "parent": "a", "child": "b_l", "at": [5, 0, 0], "angle_deg": [0, 9]}}
+    assert "E_" in _refusal(plan)
+
+
+def _refusal(plan: Json) -> str:
+    try:
+        return str(check_plan(AssemblyPlan.from_json(plan)).errors)
+    except PlanError as error:
+        return str(error)
 
 
 SCRIPT = """
