@@ -199,6 +199,8 @@ def test_memory_files_and_output_are_bounded() -> None:
 
     assert b"MemoryError" in tried("x = bytearray(2**30)", Limits(seconds=30, memory=2**28)).err
     assert tried("open('file', 'wb').write(bytes(2**22))", Limits(seconds=30, file_size=2**20)).code != 0
+    busy = tried("import os\nif not os.fork():\n    while sum(os.times()[:2]) < 0.5: pass\nelse: os.wait()", Limits(seconds=60))
+    assert 0.4 < busy.processor < 5.0  # of a process below it, too
     out = tried("import os\nfor _ in range(70): os.write(1, b'x' * 2**20)\nos.write(1, b'end')", Limits(seconds=60)).out
     assert len(out) == launcher.OUTPUT
     assert out.endswith(b"end")

@@ -397,7 +397,7 @@ def _outcome(ended: FreeCADEnded) -> JobOutcome:
     """Return how a process ended, as the worker reports it; FreeCAD itself turns a crash into exit code 1."""
     killed = ended.code - BY_SIGNAL if ended.code > BY_SIGNAL else -min(ended.code, 0)
     crashed = signal.SIGSEGV if "SIGSEGV" in ended.said or "Segmentation" in ended.said else 0
-    return JobOutcome(None if killed or crashed else ended.code, int(killed or crashed), ended.late, 0)
+    return JobOutcome(None if killed or crashed else ended.code, int(killed or crashed), ended.late, 0, ended.processor)
 
 
 def _crash(ended: FreeCADEnded) -> str:

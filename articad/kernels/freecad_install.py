@@ -84,12 +84,14 @@ class FreeCADEnded:
         late: Whether it was ended because its processor time or the wall clock was over.
         said: The end of its output, for people only.
         unconfined: Why the sandbox could not be set up, so that nothing of the program ran; empty if it was.
+        processor: Its processor time [s]; 0 where the system does not tell.
     """
 
     code: int
     late: bool
     said: str
     unconfined: str = ""
+    processor: float = 0.0
 
     @property
     def ok(self) -> bool:
@@ -389,4 +391,4 @@ def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | Non
     limits, place = launcher.Limits(seconds=seconds), None if folder is None else str(folder)
     ended = launcher.run(command, environment=environment, folder=place, files=files, limits=limits, merged=True)
     late = ended.late or ended.code in (-signal.SIGXCPU, BY_SIGNAL + signal.SIGXCPU)
-    return FreeCADEnded(ended.code, late, ended.out[-_TAIL:].decode(errors="replace"))
+    return FreeCADEnded(ended.code, late, ended.out[-_TAIL:].decode(errors="replace"), processor=ended.processor)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import inspect
 import json
 import shutil
+from collections import defaultdict
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from functools import wraps
 from pathlib import Path
@@ -25,7 +27,7 @@ from articad.mcp.skill import page, section
 from articad.mcp.workbench import BRIEF_BYTES, Tell, Workbench, condensed, gathered
 from articad.plan.amending import amended
 from articad.processes import scratch
-from articad.runs.run import REQUEST_FILE, write_atomically
+from articad.runs.run import REQUEST_FILE, require_idle, write_atomically
 
 Tool = Callable[..., Awaitable[Any]]
 Dialect = Literal["build123d", "freecad"]
@@ -65,6 +67,7 @@ class Tools:
         self.bench = Workbench(root)
         self._known: dict[str, list[Json]] = {}  # design -> findings of its plan when it was checked last
         self._plans: dict[str, bytes] = {}  # design -> the plan that was checked then
+        self._turns: defaultdict[str, asyncio.Lock] = defaultdict(asyncio.Lock)  # design -> whose turn it is to change its plan or its run
 
     async def schema(
         self,
@@ -88,11 +91,12 @@ class Tools:
         detail: Detail = False,
     ) -> Json:
         """Save a plan and report everything that is wrong with it, before any geometry exists."""
-        if plan is not None:
-            self.bench.write_plan(design, plan)
-        if script is not None:
-            self.bench.write_common_script(design, script)
-        report = await self._checked(design)
+        async with self._turns[design]:
+            if plan is not None:
+                self.bench.write_plan(design, plan)
+            if script is not None:
+                self.bench.write_common_script(design, script)
+            report = await self._checked(design)
         return condensed(report, detail=True) if detail else answers.verdict(report)
 
     async def edit_plan(
@@ -104,11 +108,12 @@ class Tools:
         ],
     ) -> Json:
         """Change a plan at the addresses that findings name, check it, and return only findings that are new."""
-        before = self._known.get(design) if self._current(design) else None
-        if before is None:
-            before = gathered(await self._checked(design))
-        self.bench.amend_plan(design, changes)
-        return answers.changed(before, await self._checked(design))
+        async with self._turns[design]:
+            before = self._known.get(design) if self._current(design) else None
+            if before is None:
+                before = gathered(await self._checked(design))
+            self.bench.amend_plan(design, changes)
+            return answers.changed(before, await self._checked(design))
 
     async def build_part(
         self, context: Context, design: Design, part: str, script: str | None = None, kernel: Kernel = None, detail: Detail = False
@@ -156,7 +161,8 @@ class Tools:
     ) -> Json:
         """Build all parts, assemble them, check interference at rest, write URDF and MJCF."""
         folder = self.bench.design(design)
-        report = await self._built(context, folder, kernel, complete=complete)
+        async with self._turns[design]:
+            report = await self._built(context, folder, kernel, complete=complete)
         if "certificate" in report and not detail:
             report |= {"proven": report["certificate"]["covers"], "accepted": report["verification"]["ok"]}
         keep = ("freedoms", "mass_kg", "drivers", "deepest_overlap_mm", "files", "proven", "accepted")
@@ -292,6 +298,10 @@ class Tools:
 
     async def edit_parameters(self, context: Context, design: Design, values: dict[str, float], kernel: Kernel = None) -> Json:
         """Change parameters of the plan, build again, and say which parts changed and which are provably the same."""
+        async with self._turns[design]:
+            return await self._edited(context, design, values, kernel)
+
+    async def _edited(self, context: Context, design: str, values: Mapping[str, float], kernel: Kernel) -> Json:
         folder = self.bench.design(design)
         kept = self.bench.read(f"{design}/plan.json")
         plan = self.bench.document(design)
@@ -379,6 +389,7 @@ class Tools:
 
         Raises:
             ReadError: If a link or anything but a run is there.
+            RunError: If another process works in it.
         """
         out = folder / "run"
         if out.is_symlink():
@@ -387,6 +398,7 @@ class Tools:
             others = [entry for entry in out.iterdir() if not entry.name.startswith(scratch.BESIDE)] if out.is_dir() else [out]
             if others and not is_file(out / REQUEST_FILE, root=self.bench.root):
                 raise ReadError.at(out, f"{out.name} of {folder.name} is not a run.", "Move the folder away; a build makes it.")
+            require_idle(out)  # it is about to be removed
         return out
 
     def _shapes(self, design: str) -> dict[str, str]:

@@ -38,6 +38,7 @@ _FILE_BYTES: Final = 2**32  # of each file that a command writes
 _PAGE_BYTES: Final = 64_000_000
 _PAGE_S: Final = 300.0
 _TOLD_EVERY_S: Final = 2.0
+_END_S: Final = 5.0  # for a command that was killed to end; it takes milliseconds
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}\Z")
 _FINDING_KEYS: Final = ("code", "where", "message", "hint", "route", "cause")
 
@@ -252,6 +253,7 @@ class Workbench:
             ended = await self._finished(child, command, tell)
         finally:  # if cancelled, kill the command and all that it started; the thread that waits for it does the rest
             child.kill()
+            child.wait(_END_S)  # then it writes nothing any more, and has left the run
         if ended.late:
             message = f"`articad {command}` was ended after {seconds:.0f} s."
             raise ReadError.at(command, message, "Ask for less at once, or for more seconds.")

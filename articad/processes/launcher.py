@@ -94,12 +94,14 @@ class Ended:
         late: Whether it was killed because its time was over.
         out: The end of what it wrote to stdout.
         err: The end of what it wrote to stderr.
+        processor: Processor time of it and of all that had ended below it [s]; 0 where the system does not tell.
     """
 
     code: int
     late: bool
     out: bytes
     err: bytes
+    processor: float = 0.0
 
     @property
     def last_line(self) -> str:
@@ -205,6 +207,7 @@ class Child:
                 else:
                     reading.join(pause)
             late = not self.ended()
+            processor = self._processor_time()
             self.kill()  # its own children may hold its pipes open
             for reader in readers:
                 reader.join(_END_S)
@@ -212,7 +215,14 @@ class Child:
         finally:
             code = self.close()
         out, err = (bytes(text) for text in (*texts, bytearray(), bytearray())[:2])
-        return Ended(code, late, out, err)
+        return Ended(code, late, out, err, processor)
+
+    def _processor_time(self) -> float:
+        """Return the processor time of the process, which may have ended but is not reaped, and of all that it has reaped [s]."""
+        with contextlib.suppress(OSError):
+            fields = Path(f"/proc/{self.pid}/stat").read_bytes().rpartition(b")")[2].split()
+            return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")  # proc(5): utime, stime, cutime, cstime
+        return 0.0
 
 
 def start(

@@ -620,6 +620,16 @@ def require_place(request: RunRequest, out: str | Path | None) -> None:
         raise RunError.at(path, message, f"Name another directory with --out, or {repeat}.")
 
 
+def require_idle(path: Path) -> None:
+    """Check that no process works in a run, before it is removed.
+
+    Raises:
+        RunError: If one does.
+        WriteError: If the folder cannot be opened.
+    """
+    os.close(_locked(path))
+
+
 def _require_writable(path: Path) -> None:
     """Check that a directory can be made: make it and remove it again, with any new parents.
 

@@ -173,6 +173,16 @@ def test_an_endless_script_ends_at_its_limit() -> None:
     assert [finding.code for finding in raised.value.findings] == ["E_SCRIPT_TIMEOUT"]
 
 
+def test_a_script_that_defies_its_limit_is_killed_and_told_as_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The signal that it ignores is followed by one that nothing ignores; no lack of memory is told."""
+    monkeypatch.setattr("articad.kernels.freecad._START_SECONDS", 0.0)
+    monkeypatch.setattr("articad.kernels.freecad_install.WAITING", 20.0)
+    impatient = FreeCADKernel(timeout=4.0)
+    with pytest.raises(BuildError) as raised:
+        impatient.build(b"import signal\nsignal.signal(signal.SIGXCPU, signal.SIG_IGN)\nwhile True: pass\n", PLATE)
+    assert [finding.code for finding in raised.value.findings] == ["E_SCRIPT_TIMEOUT"]
+
+
 def test_waiting_costs_no_processor_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """A busy machine makes every script wait."""
     monkeypatch.setattr("articad.kernels.freecad._START_SECONDS", 0.0)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import math
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -11,9 +13,13 @@ from typing import Any
 import pytest
 
 from articad import examples
+from articad.mcp.server import Tools
 from articad.mcp.workbench import FULL_BYTES
 from articad.plan.reading import MOST_LEVELS
-from tests.mcp.test_links import CALLS, told
+from articad.processes import scratch
+from articad.runs.run import Run, RunRequest
+from tests.coroutines import finish
+from tests.mcp.test_links import CALLS, Deaf, told
 
 PLANS = {
     "nested": "[" * 100_000,
@@ -64,6 +70,59 @@ def test_a_folder_that_is_no_run_is_not_removed(tmp_path: Path, monkeypatch: pyt
     assert (tmp_path / "box" / "run" / "notes.txt").read_text() == "mine"
     assert "run" in answer
     assert "is not a run" in answer
+
+
+@pytest.mark.parametrize("second", ["edit_parameters", "build", "edit_plan"])
+def test_calls_that_change_one_design_wait_for_each_other(second: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An edit puts plan and run back where it fails: two at once put back each other's unfinished run in place of the good one."""
+    working: list[str] = []
+
+    async def run(_: Any, command: str, *words: str, **__: Any) -> dict[str, Any]:
+        if command != "build":
+            return {"ok": True, "findings": []}
+        assert not working
+        working.append(command)
+        out = Path(next(word for word in words if word.startswith("--out=")).removeprefix("--out="))
+        scratch.write(out / "request.json", b"unfinished")
+        await asyncio.sleep(0.2)
+        scratch.write(out / "request.json", b"unfinished")
+        working.pop()
+        return {"ok": False, "error": "no", "findings": []}
+
+    monkeypatch.setattr("articad.mcp.workbench.Workbench.run", run)
+    (tmp_path / "box" / "run").mkdir(parents=True)
+    (tmp_path / "box" / "run" / "request.json").write_text("good")
+    (tmp_path / "box" / "plan.json").write_bytes((examples.folder("wardrobe") / "plan.json").read_bytes())
+    tools, heard = Tools(tmp_path), dict[str, Any](context=Deaf())
+    arguments: dict[str, dict[str, Any]] = {
+        "edit_parameters": heard | {"values": {"width": 940.0}},
+        "build": heard,
+        "edit_plan": {"changes": {"name": "other"}},
+    }
+
+    async def both() -> None:
+        first = asyncio.ensure_future(tools.edit_parameters(Deaf(), "box", {"width": 950.0}))
+        await asyncio.sleep(0.05)
+        await getattr(tools, second)(design="box", **arguments[second])
+        await first
+
+    finish(both())
+    assert (tmp_path / "box" / "run" / "request.json").read_text() == ("unfinished" if second == "build" else "good")
+    assert json.loads((tmp_path / "box" / "plan.json").read_text())["name"] == ("other" if second == "edit_plan" else "wardrobe")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such locks")
+@pytest.mark.parametrize("tool", ["build", "edit_parameters"])
+def test_a_run_in_which_another_process_works_is_not_removed(tool: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _no_commands(monkeypatch)
+    plan = (examples.folder("wardrobe") / "plan.json").read_bytes()
+    (tmp_path / "box").mkdir()
+    (tmp_path / "box" / "plan.json").write_bytes(plan)
+    with Run.create(RunRequest(prompt="x"), out=tmp_path / "box" / "run"):
+        answer = told(tmp_path, tool, **{key: "box" if value == "NAMED" else value for key, value in CALLS[tool].items()})
+        assert (tmp_path / "box" / "run" / "request.json").is_file()
+    assert "Another process uses" in answer
+    assert (tmp_path / "box" / "plan.json").read_bytes() == plan
 
 
 def _no_commands(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,6 +7,7 @@ import copy
 import json
 import math
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -356,7 +357,7 @@ def test_likenesses_that_repeat_too_much_are_refused() -> None:
         AssemblyPlan.from_json(plan)
 
 
-LONG_TEXTS = {
+LONG_TEXTS: dict[str, Callable[[], Any]] = {
     "digits": lambda: short_texts.number("1" * 500_000 + "x"),
     "pieces": lambda: short_texts.split("a" * 2_000_000),
     "images": lambda: expanded(
