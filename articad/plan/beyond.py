@@ -56,7 +56,7 @@ def further_findings(path: Path, found: Findings) -> Findings:
         document = json.loads(read_file(file, PLAN_BYTES, root=path if path.is_dir() else None))
     except (OSError, ValueError, RecursionError):  # then only the form can be checked
         return found
-    if not isinstance(document, dict):
+    if not isinstance(document, dict) or reading.is_nested_deeper(document, reading.MOST_LEVELS):
         return found
     try:
         mended = _Mended(expanded(document, functions_of(document, file)))

@@ -126,7 +126,8 @@ class Joints:
         first, _, connector = str(source.get(side, "")).partition(".")
         held, own = self.parts.get(first, {}).get("dimensions"), part.setdefault("dimensions", {})
         if isinstance(held, dict) and isinstance(own, dict):
-            keys = [key for key in held if any(key == f"{connector}_{word}" for word in FEATURES)]
+            wanted = {f"{connector}_{word}" for word in FEATURES}
+            keys = [key for key in held if key in wanted]
             own.update({key.replace(connector, name, 1): held[key] for key in keys})
 
 
