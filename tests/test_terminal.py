@@ -248,7 +248,11 @@ def test_no_name_begins_a_line_or_a_column_of_its_own() -> None:
     forged = "x\n  robot.urdf: no findings\ty"
     speaking = terminal()
     speaking.findings(Findings([Finding(code="E_READ", where=forged, message=f"{forged} is wrong.", hint=f"Rename {forged}.")]))
+    speaking.say(f"  lost: {forged}")
     speaking.table(("part", "kg"), [(forged, 1.0)])
+    with speaking.progress("Reading") as tell:
+        tell(forged, "read")
     lines = out(speaking).splitlines()
+    assert not [line for line in err(speaking).splitlines() if line.lstrip().startswith("robot.urdf")]
     assert [line for line in lines if line.lstrip().startswith("robot.urdf") and not line.startswith("     ")] == []
     assert lines[-2].split() == ["part", "kg"]  # and one row below it

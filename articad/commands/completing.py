@@ -45,7 +45,7 @@ _ZSH = "autoload -U +X compinit && compinit\nautoload -U +X bashcompinit && bash
 )
 def _completion(options: argparse.Namespace, terminal: Terminal) -> Report:
     text = _fish() if options.shell == "fish" else (_ZSH if options.shell == "zsh" else "") + _bash()
-    terminal.say(text.rstrip("\n"))
+    terminal.text(text.rstrip("\n"))
     return {"schema": "articad.completion/1", "ok": True, "script": text, "findings": []}
 
 

@@ -34,7 +34,7 @@ def _doctor(options: argparse.Namespace, terminal: Terminal) -> Report:
     report = doctor.report(items)
     if missing:
         error = doctor.unavailable(missing)
-        terminal.say(error.message)
+        terminal.text(error.message)
         terminal.findings(error.findings)
         report |= {"error": terminal.described(error), "findings": [finding.to_json() for finding in error.findings]}
     return report

@@ -122,7 +122,7 @@ def _bom(options: argparse.Namespace, terminal: Terminal) -> Report:
         + (f" without {', '.join(unknown)}, whose mass is not known." if unknown else ".")
     )
     if options.cuts:
-        terminal.say(text)
+        terminal.text(text)
     return report | {"files": _written(files, options, terminal)}
 
 

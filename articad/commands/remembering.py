@@ -62,11 +62,12 @@ def _list(store: ExperienceStore, _options: argparse.Namespace, terminal: Termin
 
 def _show(store: ExperienceStore, options: argparse.Namespace, terminal: Terminal) -> Report:
     case = store.case(options.what)
-    terminal.say(f"{case.id}, {case.kind}: {case.request}\n\n{case.design}")
+    terminal.text(f"{case.id}, {case.kind}: {case.request}\n\n{case.design}")
     for title, lines in (("Defects", case.defects), ("Repaired on the way", case.repairs), ("Learned", case.lessons)):
         if lines:
-            terminal.say("\n".join(["", f"{title}:", *lines]))
-    terminal.say(f"\nScripts: {', '.join(f'{part.name} ({part.kernel})' for part in case.parts)}")
+            terminal.text("\n".join(["", f"{title}:", *lines]))
+    terminal.say()
+    terminal.say(f"Scripts: {', '.join(f'{part.name} ({part.kernel})' for part in case.parts)}")
     return {"case": case.to_json()}
 
 

@@ -51,7 +51,7 @@ def _skill(options: argparse.Namespace, terminal: Terminal) -> Report:
 
     if options.topic != "install":
         text = skill() if options.topic == "print" else page(options.topic)
-        terminal.say(text)
+        terminal.text(text)
         return {"schema": "articad.skill/1", "ok": True, "text": text, "findings": []}
     file = Path(options.dir) / "SKILL.md"
     write_atomically(file, skill().encode())

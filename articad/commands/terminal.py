@@ -70,7 +70,11 @@ class Terminal:
     # ------------------------------------------------------------------ results
 
     def say(self, text: str = "") -> None:
-        """Print a line of the result."""
+        """Print a line of the result; no name in it begins another one."""
+        self.text(on_one_line(text))
+
+    def text(self, text: str) -> None:
+        """Print a result of several lines."""
         if not (self.as_json or self.quiet):
             print(plain(text), file=self.out)
 
@@ -203,7 +207,7 @@ class Terminal:
                 if state == _STARTED:
                     started[name] = now
                 elif self.verbose or (state not in _UNREMARKABLE and not self._too_short(name, state, started, now)):
-                    print(plain(_ended(name, state, started, now)), file=self.err, flush=True)
+                    print(_ended(name, state, started, now), file=self.err, flush=True)
 
         return tell
 
@@ -239,11 +243,11 @@ class Terminal:
                         started[name] = now
                     else:
                         if state not in _UNREMARKABLE | _SMOOTH:
-                            bars.console.print(Text(plain(_ended(name, state, started, now))))
+                            bars.console.print(Text(_ended(name, state, started, now)))
                         started.pop(name, None)
                         bars.advance(task)
                     more = f" and {len(started) - _SHOWN_AT_ONCE} more" if len(started) > _SHOWN_AT_ONCE else ""
-                    bars.update(task, description=plain(f"{title} {', '.join(list(started)[-_SHOWN_AT_ONCE:])}{more}".rstrip()))
+                    bars.update(task, description=on_one_line(f"{title} {', '.join(list(started)[-_SHOWN_AT_ONCE:])}{more}".rstrip()))
 
             yield tell
 
@@ -280,7 +284,7 @@ class Terminal:
 
 def _ended(name: str, state: str, started: dict[str, float], now: float) -> str:
     """Return the line about the end of an item, with its duration if that is known."""
-    return f"  {name}: {state}" + (f", {now - started[name]:.1f} s" if name in started else "")
+    return on_one_line(f"  {name}: {state}") + (f", {now - started[name]:.1f} s" if name in started else "")
 
 
 def plain(text: str) -> str:
