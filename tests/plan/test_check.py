@@ -107,17 +107,6 @@ CASES = [
         "half is a dimension of box, and expressions see parameters only. Write it in parameters: '-2 * (width / 8)'.",
     ),
     Case(
-        "E_EXPRESSION",
-        chest_with(
-            lambda p: (
-                connector(p, "box", "hinge").update(o=["half + 1", 100, 80])
-                or part(p, "box").setdefault("dimensions", {}).update(half="\\g<9>")
-            )
-        ),
-        "parts.box.connectors.hinge.o[0]",
-        "expressions see parameters only. Write it in parameters: '(\\\\g<9>) + 1'.",
-    ),
-    Case(
         "E_NAME",
         chest_with(
             lambda p: (
@@ -700,6 +689,18 @@ def test_a_part_alone_needs_no_connector_and_no_joint() -> None:
     plan = pair({"type": "fixed"}, 0)
     plan["parts"], plan["joints"] = [{**plan["parts"][0], "connectors": []}], []
     assert not check(plan)
+
+
+def test_a_dimension_that_cannot_be_read_is_quoted_as_it_stands() -> None:
+    plan = chest_with(
+        lambda p: (
+            connector(p, "box", "hinge").update(o=["half + 1", 100, 80])
+            or part(p, "box").setdefault("dimensions", {}).update(half="\\g<9>")
+        )
+    )
+    (told,) = [finding for finding in check_plan(AssemblyPlan.from_json(plan)) if finding.where == "parts.box.connectors.hinge.o[0]"]
+    assert "half is a dimension of box" in told.message
+    assert told.hint == r"Write it in parameters: '(\\g<9>) + 1'."
 
 
 def test_all_faults_are_found_at_once() -> None:
