@@ -27,7 +27,7 @@ from articad.disassembly.ways import CLEAR_MM, Ways, distinct, ways_of
 from articad.geometry.faces import faces_of
 from articad.interference.relations import Groups
 from articad.interference.scene import Scene
-from articad.kinematics.joints import JointType
+from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 
 __all__ = ["assembly_order"]
@@ -247,8 +247,7 @@ class _Taking:
 
     def _step(self, removal: _Removal, placed: Sequence[str], name: str, own: str | None) -> AssemblyStep:
         moving = removal.parts
-        joints = [joint for joint in self.joints if (joint.parent in moving) != (joint.child in moving)]
-        joints = [joint for joint in joints if {joint.parent, joint.child} <= {*moving, *placed}]
+        joints = self._between(moving, placed)
         partners = [part for part in placed if any(part in (joint.parent, joint.child) for joint in joints)]
         ways, way, first = removal.ways, removal.way, removal.first
         joints = [joint for joint in joints if not ways.apart(joint.parent, joint.child).any()]
@@ -286,13 +285,17 @@ class _Taking:
             forced_mm=round(self._overlap(moving, placed, way, ways), _ROUNDED) if forced and not first.any() else 0.0,
         )
 
+    def _between(self, moving: Sequence[str], staying: Sequence[str]) -> list[Joint]:
+        """Return the joints of which one part moves and the other one stays."""
+        there = {*moving, *staying}
+        across = (joint for joint in self.joints if (joint.parent in moving) != (joint.child in moving))
+        return [joint for joint in across if {joint.parent, joint.child} <= there]
+
     def _back(self, aside: _Aside, placed: Sequence[str], name: str, own: str | None) -> AssemblyStep:
         """Return the step that moves parts, which wait beside their place, to it."""
         moving, staying, way = aside.atom, [part for part in placed if part not in aside.atom], _unit(aside.offset)
         length, after = float(np.linalg.norm(aside.offset)), aside.after
-        joints = [joint for joint in self.joints if (joint.parent in moving) != (joint.child in moving)]
-        joints = [joint for joint in joints if {joint.parent, joint.child} <= {*moving, *staying}]
-        joints = [joint for joint in joints if after.apart(joint.parent, joint.child).any()]
+        joints = [joint for joint in self._between(moving, staying) if after.apart(joint.parent, joint.child).any()]
         joints = [joint for joint in joints if not aside.ways.apart(joint.parent, joint.child).any()]
         pairs = [(a, b) for a in moving for b in staying if frozenset((a, b)) in self.forced and aside.ways.travel(a, b, way) < length]
         return AssemblyStep(
