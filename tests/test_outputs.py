@@ -49,6 +49,8 @@ ALLOWED = {
     "cli.py": "the null device",
     "importers/mjcf_compiled.py": PRIVATE,
     "runs/drawing.py": PRIVATE,
+    "runs/exporting.py": PRIVATE,
+    "runs/record.py": PRIVATE,
     "simulation/loading.py": PRIVATE,
     "batches/items.py": PRIVATE,
     "export/convex.py": PRIVATE,

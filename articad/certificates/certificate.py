@@ -170,12 +170,14 @@ class Certificate:
     def checked(self) -> Certificate:
         """Return this certificate, with the error `E_CERTIFICATE_REFUTED` if it is marked ok and the checker does not accept it."""
         reason = self.refutation() if self.ok else None
-        if reason is None:
-            return self
+        return self if reason is None else self.refuted(reason)
+
+    def refuted(self, reason: str) -> Certificate:
+        """Return this certificate with the error `E_CERTIFICATE_REFUTED`."""
         message = f"The certificate checker refutes the proof: {reason}."
         hint = "Report this with the plan: prover and checker disagree, so nothing is certified."
-        refuted = Finding(code="E_CERTIFICATE_REFUTED", where="certificate", message=message, hint=hint)
-        return replace(self, findings=Findings([*self.findings, refuted]))
+        finding = Finding(code="E_CERTIFICATE_REFUTED", where="certificate", message=message, hint=hint)
+        return replace(self, findings=Findings([*self.findings, finding]))
 
     def refutation(self) -> str | None:
         """Return why the independent checker refutes this certificate, None if it accepts it."""

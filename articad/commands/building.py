@@ -11,8 +11,12 @@ from articad.commands.options import BUILD_ARGUMENTS, FORMATS, SANDBOX
 from articad.commands.steps import assembled, loaded, reported, stage
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from articad.aliases import Progress
+    from articad.assembly import Assembly
     from articad.commands.terminal import Report, Terminal
-    from articad.findings import Findings
+    from articad.runs.exporting import Exports
     from articad.runs.run import Run
 
 
@@ -28,21 +32,17 @@ if TYPE_CHECKING:
     *BUILD_ARGUMENTS,
 )
 def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from concurrent.futures import Future, ThreadPoolExecutor
-
-    from articad.commands.steps import build_cache, draw, plan_in
+    from articad.commands.steps import build_cache, draw, plan_in, sandbox_level
     from articad.commands.summaries import print_complete
+    from articad.runs.exporting import Exports
     from articad.runs.record import (
         record_assembly,
-        record_certificate,
+        record_checked,
         record_checks,
-        record_export,
-        record_objections,
         record_page,
         run_report,
     )
     from articad.runs.run import RunRequest, open_or_create, require_place
-    from articad.simulation.standing import STANDING, stands
 
     terminal.logs = terminal.verbose or not options.complete
     plan = plan_in(options.plan)
@@ -54,36 +54,34 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     cache = build_cache(options)
     assembly = assembled(plan, scripts, options, terminal, cache=cache)
     pictures = options.pictures and not options.complete
+    proves = options.verify == "certified" or options.complete
+    formats = FORMATS if options.complete else options.formats
+    faults: list[str] = []
+    stood: list[str] = []
     with open_or_create(request, options.out) as run:
         with terminal.progress("Finishing") as tell:
             run.save_plan(plan.dumps(), 0)
             record_assembly(run, assembly)
-            with stage(tell, "checks of rest and motion" if options.verify == "sampled" else "checks at rest"):
-                checks = assembly.check(motion=options.verify == "sampled")
-            record_checks(run, checks)
-            stops = options.complete and not checks.ok
-            if (options.verify == "certified" or options.complete) and not stops:
-                with stage(tell, "proof of motion"):
-                    record_certificate(run, assembly.certify())
-            formats = () if stops else FORMATS if options.complete else options.formats
-            tried: dict[str, Future[Findings]] = {}
-            with ThreadPoolExecutor() as pool:  # a simulation waits for a process of its own
-                for name in formats:
-                    with stage(tell, f"export {name}"):
-                        main = Path(record_export(run, assembly, name)["main"])
-                    if name in STANDING and checks.ok:
-                        tried[name] = pool.submit(stands, assembly, main)
-                for name, found in tried.items():
-                    with stage(tell, f"simulation of {name} at rest"):
-                        record_objections(run, name, found.result())
+            with Exports(run, assembly, formats, beside=proves, cache=cache, sandbox=sandbox_level(options)) as exports:
+                with stage(tell, "checks of rest and motion" if options.verify == "sampled" else "checks at rest"):
+                    checks = assembly.check(motion=options.verify == "sampled")
+                record_checks(run, checks)
+                stops = options.complete and not checks.ok
+                if proves and not stops:
+                    with stage(tell, "proof of motion"):
+                        certificate = assembly.certify(check=False)
+                    with stage(tell, "check of the proof"):
+                        faults = record_checked(run, certificate)
+                if not stops:
+                    stood = _exported(run, assembly, exports, formats, tell, tries=checks.ok)
             if pictures:
                 with stage(tell, "page"):
                     record_page(run, assembly)
         if options.complete:
             report = run_report(run)
             if not stops:
-                report |= _verified(run, report, terminal)
-            print_complete(report, terminal, stood=[name for name, found in tried.items() if not found.result()])
+                report |= {"ok": report["ok"] and not faults, "verification": {"ok": not faults, "faults": faults}}
+            print_complete(report, terminal, stood=stood)
             return report
         report = reported(run, terminal)
         if pictures:
@@ -92,13 +90,24 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     return report
 
 
-def _verified(run: Run, report: Report, terminal: Terminal) -> Report:
-    """Have the independent checker read the certificate of a run; return what it adds to the report of the run."""
-    from articad.certificates.verifier import verify_file
+def _exported(run: Run, assembly: Assembly, exports: Exports, formats: Sequence[str], tell: Progress, *, tries: bool) -> list[str]:
+    """Save exports, and have MuJoCo load and hold those that it can; return the formats against which it says nothing."""
+    from concurrent.futures import ThreadPoolExecutor
 
-    with terminal.progress("Checking the proof"):
-        faults = verify_file(run.path / "certificate.json", run.path / "certificate")
-    return {"ok": report["ok"] and not faults, "verification": {"ok": not faults, "faults": faults}}
+    from articad.runs.record import record_objections
+    from articad.simulation.standing import STANDING, stands
+
+    tried = {}
+    with ThreadPoolExecutor() as pool:  # a simulation waits for a process of its own
+        for name in formats:
+            with stage(tell, f"export {name}"):
+                main = Path(exports.record(name)["main"])
+            if name in STANDING and tries:
+                tried[name] = pool.submit(stands, assembly, main)
+        for name, found in tried.items():
+            with stage(tell, f"simulation of {name} at rest"):
+                record_objections(run, name, found.result())
+    return [name for name, found in tried.items() if not found.result()]
 
 
 @command(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -10,6 +11,7 @@ from articad import formats
 from articad.aliases import Progress
 from articad.assembly import Assembly
 from articad.certificates.certificate import Certificate
+from articad.certificates.verifier import verify_file
 from articad.connectors.connector import Connector
 from articad.errors import ReadError
 from articad.findings import Findings
@@ -21,6 +23,7 @@ from articad.kernels.kernel import BuildCache
 from articad.kernels.parts import RealisedPart
 from articad.plan.brief import brief
 from articad.plan.schema import AssemblyPlan
+from articad.processes import scratch
 from articad.report import Documents, report_page
 from articad.runs.run import Run
 
@@ -108,6 +111,22 @@ def record_certificate(run: Run, certificate: Certificate) -> Report:
     return report
 
 
+def record_checked(run: Run, certificate: Certificate) -> list[str]:
+    """Have the independent checker read the files of a certificate, then save it; return why it is refuted, nothing if it is accepted.
+
+    A refuted certificate is saved with the error `E_CERTIFICATE_REFUTED`.
+    """
+    with scratch.folder("certificate") as name:
+        folder = Path(name)
+        (folder / "certificate.json").write_text(json.dumps(certificate.to_json()), encoding="utf-8")
+        (folder / "meshes").mkdir()
+        for file, content in certificate.mesh_files().items():
+            (folder / "meshes" / file).write_bytes(content)
+        faults = verify_file(folder / "certificate.json", folder / "meshes")
+    record_certificate(run, certificate.refuted(faults[0]) if faults and certificate.ok else certificate)
+    return faults
+
+
 def _hurried(run: Run) -> list[Report]:
     """Return the findings that are only in the trace, each once."""
     found = {event["where"]: event for event in run.events() if event.get("event") == "finding" and event.get("code") in HURRIED}
@@ -117,8 +136,13 @@ def _hurried(run: Run) -> list[Report]:
 def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False, **choices: Any) -> Report:
     """Save an export; return its report `articad.losses/1`, with the folder. For `choices` see `articad.formats.write`."""
     bundle = formats.NAMED[format_name].write(assembly, strict=strict, **choices)
-    run.save_export(format_name, bundle.files, bundle.to_json())
-    run.trace("artifact", kind=format_name, file=f"export/{format_name}/{bundle.main}")
+    return record_files(run, format_name, bundle.files, bundle.to_json())
+
+
+def record_files(run: Run, format_name: str, files: Mapping[str, bytes], report: Report) -> Report:
+    """Save the files of an export, the main one first, and its report `articad.losses/1`; return the report, with the folder."""
+    run.save_export(format_name, files, report)
+    run.trace("artifact", kind=format_name, file=f"export/{format_name}/{next(iter(files))}")
     return run.exports()[format_name]
 
 
