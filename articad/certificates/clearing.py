@@ -87,6 +87,7 @@ class Cleared:
         boxes: Number of boxes examined.
         trail: Record of all steps, which a checker can repeat.
         course: The boxes of the search.
+        left: The search, if the budget or the number of rows ended it, so that it can go on; None otherwise.
     """
 
     contact: tuple[float, ...] | None = None
@@ -96,11 +97,21 @@ class Cleared:
     boxes: int = 0
     trail: Trail | None = None
     course: Boxes | None = None
+    left: _Search | None = None
 
     @property
     def is_complete(self) -> bool:
         """True if the surfaces stay apart over the whole range."""
         return self.contact is None and not self.out_of_budget
+
+    def continued(self, budget: WorkBudget, most: int) -> Cleared:
+        """Return the result of going on where the search ended: that of one search with the larger budget from the beginning.
+
+        Args:
+            budget: Work is spent from it.
+            most: Largest number of rows, those examined so far included.
+        """
+        return self if self.left is None else self.left.run(budget, most)
 
 
 @dataclass
@@ -149,32 +160,7 @@ def clear(
     Returns:
         The trail if the surfaces stay apart; otherwise the contact, or `out_of_budget`.
     """
-    # depth-first over (piece of a, piece of b, box of motion): each round settles rows by a direction, or cuts one of the three
-    search = _Search(a, b, boxes, needed + ROUNDING_MM, epsilon, axis)
-    stack, outcome = [search.roots()], search.outcome
-    while stack and outcome.contact is None:
-        if budget.is_spent or outcome.pairs > most:
-            outcome.out_of_budget = True
-            break
-        rows = stack.pop()
-        while stack and len(rows) < CHUNK:
-            rows = _Pairs.of_all([stack.pop(), rows])
-        if len(rows) > CHUNK:
-            stack.append(rows.of(np.arange(len(rows)) < len(rows) - CHUNK))
-            rows = rows.of(np.arange(len(rows)) >= len(rows) - CHUNK)
-        outcome.pairs += len(rows)
-        before = boxes.work
-        try:
-            stack += [found for found in search.step(rows) if len(found)]
-        except CannotCut:
-            outcome.out_of_budget = True
-            break
-        finally:
-            budget.spend(len(rows) + STEP + boxes.work - before, queries=len(rows))
-    outcome.boxes = len(boxes.spread)
-    if outcome.is_complete:
-        outcome.trail = search.trail
-    return outcome
+    return _Search(a, b, boxes, needed + ROUNDING_MM, epsilon, axis).run(budget, most)
 
 
 class _Search:
@@ -182,9 +168,39 @@ class _Search:
         self.forests, self.a, self.b = (a, b), a.tree, b.tree
         self.boxes, self.needed, self.epsilon, self.axis = boxes, needed, epsilon, axis
         self.spread, self.trail = boxes.spread, Trail()
-        self.outcome = Cleared()
+        self.outcome = Cleared(course=boxes)
         self.size_a, self.size_b = np.linalg.norm(self.a.half, axis=1), np.linalg.norm(self.b.half, axis=1)
         self.slides: Slides | None = None
+        self.stack = [self.roots()]
+
+    def run(self, budget: WorkBudget, most: int) -> Cleared:
+        """Search on until the end, or until the budget is spent or more than `most` rows are examined in all."""
+        # depth-first over (piece of a, piece of b, box of motion): each round settles rows by a direction, or cuts one of the three
+        stack, outcome, boxes = self.stack, self.outcome, self.boxes
+        outcome.out_of_budget, outcome.left = False, None
+        while stack and outcome.contact is None:
+            if budget.is_spent or outcome.pairs > most:
+                outcome.out_of_budget, outcome.left = True, self
+                break
+            rows = stack.pop()
+            while stack and len(rows) < CHUNK:
+                rows = _Pairs.of_all([stack.pop(), rows])
+            if len(rows) > CHUNK:
+                stack.append(rows.of(np.arange(len(rows)) < len(rows) - CHUNK))
+                rows = rows.of(np.arange(len(rows)) >= len(rows) - CHUNK)
+            outcome.pairs += len(rows)
+            before = boxes.work
+            try:
+                stack += [found for found in self.step(rows) if len(found)]
+            except CannotCut:
+                outcome.out_of_budget = True
+                break
+            finally:
+                budget.spend(len(rows) + STEP + boxes.work - before, queries=len(rows))
+        outcome.boxes = len(boxes.spread)
+        if outcome.is_complete:
+            outcome.trail = self.trail
+        return outcome
 
     def roots(self) -> _Pairs:
         """Return one row for each pair of trees over the whole range."""

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from articad.arrays import FloatArray, IntArray
-from articad.certificates.clearing import Boxes, CannotCut, Cleared
+from articad.certificates.clearing import Boxes, CannotCut
 from articad.certificates.proof import Proof, Prover, Shrink
 from articad.certificates.spread import Spread
 from articad.certificates.verifier import Checker, Refuted, joined
@@ -440,7 +440,6 @@ class LinkageProver(Prover):
         self.others = np.where(mine[:, None], np.nan, self.bounds)
         if self.axis is not None and self.axis.dimensions == 3:
             self.axis = None  # a ball that follows is not held within its cone: nothing proves that it stays within it
-        self._last: Steps | None = None
         self.looked = 0  # poses at which `worst` measured the overlap
 
     @property
@@ -465,8 +464,7 @@ class LinkageProver(Prover):
 
     def boxes(self, bounds: FloatArray) -> Boxes:  # noqa: ARG002  ways know their ranges
         """Return the steps along the drivers."""
-        self._last = Steps(self.ways, self.chain, self.others)
-        return self._last
+        return Steps(self.ways, self.chain, self.others)
 
     def vary(self, bounds: FloatArray) -> dict[str, tuple[float, float]]:  # noqa: ARG002
         """Return the drivers' ranges that were cleared, and those of the independent coordinates."""
@@ -480,16 +478,16 @@ class LinkageProver(Prover):
         return {name: float(value) for way in self.ways for name, value in zip(way.drivers, way.rest, strict=True)}
 
     def _proof(self, begun: Proof, shrink: Shrink, most: int) -> Proof:
-        outcome: Cleared = self.search(self.bounds, shrink, most)
+        outcome = self._over_all(shrink, most)
         found = replace(begun, out_of_budget=outcome.out_of_budget, shrink=shrink, epsilon=shrink.depth or self.epsilon)
         if outcome.is_complete:
             vary = self.vary(self.bounds)
             lower, upper = vary[self.drivers[0]] if self.is_single else (None, None)
             claim = replace(self.claim(begun.overlap, vary, shrink, outcome), start=self._rest())
             return replace(found, claims=(claim,), lower=lower, upper=upper)
-        if outcome.contact is None or self._last is None:
+        if outcome.contact is None or not isinstance(outcome.course, Steps):
             return found
-        return replace(found, contacts=({**self.named(outcome.contact), **self._last.driven(outcome.box)},))
+        return replace(found, contacts=({**self.named(outcome.contact), **outcome.course.driven(outcome.box)},))
 
     @property
     def moving(self) -> tuple[Freedom, ...]:

@@ -125,6 +125,7 @@ class Prover:
         self.bounds = np.array([(freedom.lower, freedom.upper) for freedom in self.chain.freedoms]).reshape(-1, 2)
         self._forests: dict[Shrink, tuple[Forest, Forest]] = {}
         self._kept: dict[Shrink, tuple[Surface, NDArray[np.float32] | None]] = {}
+        self._searched: dict[Shrink, Cleared] = {}
         self.axis = self._axis()
 
     def prove(self, *, most: int = MOST_PAIRS, tentative: bool = False) -> Proof:
@@ -239,7 +240,7 @@ class Prover:
         return False
 
     def _proof(self, begun: Proof, shrink: Shrink, most: int) -> Proof:
-        outcome = self.search(self.bounds, shrink, most)
+        outcome = self._over_all(shrink, most)
         found = replace(begun, out_of_budget=outcome.out_of_budget, shrink=shrink, epsilon=shrink.depth or self.epsilon)
         if not outcome.is_complete:
             contacts = () if outcome.contact is None else (self.named(outcome.contact),)
@@ -247,6 +248,14 @@ class Prover:
         ends = self.bounds[0].tolist() if self.is_line else (None, None)
         claim = self.claim(begun.overlap, self.vary(self.bounds), shrink, outcome)
         return replace(found, claims=(claim,), lower=ends[0], upper=ends[1])
+
+    def _over_all(self, shrink: Shrink, most: int) -> Cleared:
+        """Prove that the surfaces stay apart over the whole range, from where an earlier search of it ended."""
+        known = self._searched.pop(shrink, None)
+        outcome = self.search(self.bounds, shrink, most) if known is None else known.continued(self.budget, most)
+        if outcome.left is not None or outcome.contact is not None:
+            self._searched[shrink] = outcome
+        return outcome
 
     def search(self, bounds: FloatArray, shrink: Shrink, most: int = MOST_PAIRS) -> Cleared:
         """Prove that the surfaces stay apart over a range."""
@@ -256,9 +265,7 @@ class Prover:
         """Prove that the surfaces stay apart over boxes."""
         a, b = self.forests(shrink)
         needed = self.margin + shrink.keep + CLAIM_SLACK_MM
-        outcome = clear(a, b, boxes, needed, axis=self.axis, epsilon=self.epsilon, budget=self.budget, most=most)
-        outcome.course = boxes
-        return outcome
+        return clear(a, b, boxes, needed, axis=self.axis, epsilon=self.epsilon, budget=self.budget, most=most)
 
     def forests(self, shrink: Shrink) -> tuple[Forest, Forest]:
         """Return trees over both surfaces, with their outlines if a single joint connects the two."""
