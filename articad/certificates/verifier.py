@@ -40,7 +40,7 @@ REST = 1e-6  # rad or mm: largest deviation of a follower at rest
 STIFF = 1e-4  # rad or mm: radius about the rest pose of joints without a driver, within which there is no other solution
 SETTLED = 1e-7  # rad or mm: precision of a solution at the ends of a range that repeats
 FLOAT = 1e-12  # tolerance for a ratio to fit whole turns
-BULK = 2048  # rows processed together
+BULK = 512  # rows processed together
 TUBES = 16  # pieces of drivers' ranges processed together
 NODES = np.array([-1.0, -(0.5**0.5), 0.0, 0.5**0.5, 1.0])  # of quartic interpolation: the extrema of the Chebyshev polynomial T4, whose ...
 LEBESGUE, QUINTIC = 1.8, 1 / 960  # ... Lebesgue constant is below 1.8, and whose error is below 1/960 of the largest fifth derivative
@@ -153,7 +153,7 @@ class Hulls:
         self.base, self.known, self.found = count + 1, np.empty(0, dtype=np.int64), np.empty((0, 8, 3))
 
     def of(self, spans: Any) -> Any:
-        """Return the points `(k, 8, 3)` of pieces, each from one triangle of the order up to another `(k, 2)`."""
+        """Return where `found` has the points `(8, 3)` of pieces, each from one triangle of the order up to another `(k, 2)`."""
         keys = spans @ [self.base, 1]
         new = np.setdiff1d(keys, self.known)
         if len(new):
@@ -169,7 +169,7 @@ class Hulls:
             found[few] = self.points[which]
             order = np.argsort(known := np.append(self.known, new))
             self.known, self.found = known[order], np.append(self.found, found, axis=0)[order]
-        return self.found[np.searchsorted(self.known, keys)]
+        return np.searchsorted(self.known, keys)
 
 
 def radii(flat: Any) -> tuple[Any, Any]:
@@ -210,11 +210,13 @@ def follow(rows: Any, codes: Any, directions: Any, A: Any, B: Any, how: Any, cle
         for (*row, box), code in zip(level[told < CUT].tolist(), told[told < CUT].tolist(), strict=True):
             need(kept(code, slice(*row[:2]), slice(*row[2:]), box) > clear, "pieces come too close")
         settled, by = level[told >= 0], told[told >= 0]
+        at = [hull.of(settled[:, columns]) for hull, columns in zip(hulls, (slice(2), slice(2, 4)), strict=True)]
         for start in range(0, len(settled), BULK):
-            some, code = settled[start : start + BULK], by[start : start + BULK]
+            rows = slice(start, start + BULK)
+            some, code = settled[rows], by[rows]
             box = some[:, 4]
             u = np.where((code < of_a)[:, None], along[code], (moving[0][box] @ along[code][..., None])[..., 0])
-            p, q = hulls[0].of(some[:, :2]), hulls[1].of(some[:, 2:4])
+            p, q = (hull.found[places[rows]] for hull, places in zip(hulls, at, strict=True))
             for k in np.flatnonzero(~(apart(u, p, q, [part[box] for part in moving]) > clear)).tolist():
                 one, x, y = slice(k, k + 1), slice(*some[k, :2]), slice(*some[k, 2:4])  # all corners give more than those of the box
                 gap = apart(u[one], A[x].reshape(1, -1, 3), B[y].reshape(1, -1, 3), [part[box[one]] for part in moving])
@@ -240,6 +242,12 @@ def dot(a: Any, b: Any) -> Any:
 def cross(a: Any, b: Any) -> Any:
     """Return the cross products of vectors `(..., 3)`."""
     return a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
+
+
+def length(v: Any) -> Any:
+    """Return the lengths of vectors `(..., 3)`: a sum over so short an axis is slower by far."""
+    x, y, z = (v[..., k] for k in range(3))
+    return np.sqrt(x * x + y * y + z * z)
 
 
 def spins(axes: Any) -> Any:
@@ -318,14 +326,16 @@ def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: A
     That is their speed, plus half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|.
     `spins (k, F, 3, 3)`, `v (k, F, 3)`, `along (k, F, drivers)`, the others `(k, F)`; returns `(k, n)`.
     """
-    across, width, turns = (spins @ u[:, None, :, None])[..., 0], np.abs(along).sum(2) + aside, turned > 0  # p @ spin is axis x p
+    all_spins = spins.reshape(len(u), -1, 3)  # one product for all factors; p @ spin is axis x p, and p @ spin' is -axis x p
+    across, width, turns = (all_spins @ u[..., None]).reshape(v.shape), np.abs(along).sum(2) + aside, turned > 0
     speeds = p @ across.swapaxes(1, 2) + (v @ u[..., None]).swapaxes(1, 2)
-    reach, inside = np.linalg.norm(p[:, None] @ spins + v[:, :, None], axis=3), np.zeros(p.shape[:2])
+    reach = length(v[:, None] - (p @ all_spins.swapaxes(1, 2)).reshape(*p.shape[:2], *v.shape[1:]))
+    inside = np.zeros(p.shape[:2])
     moved = np.abs(speeds @ along).sum(2) + (np.abs(speeds) @ aside[..., None])[..., 0]
-    tilt = np.minimum(np.linalg.norm(across, axis=2) + outer, 1.0) * turned
+    tilt = np.minimum(length(across) + outer, 1.0) * turned
     share = np.cumsum(tilt, axis=1) - tilt / 2
     for f in reversed(range(tilt.shape[1])):
-        carried = width[:, f, None] * (reach[:, f] + inside * turns[:, f, None])
+        carried = width[:, f, None] * (reach[..., f] + inside * turns[:, f, None])
         moved, inside = moved + carried * share[:, f, None], inside + carried
     return moved
 
