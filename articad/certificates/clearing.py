@@ -19,8 +19,10 @@ from numpy.typing import NDArray
 
 from articad.arrays import FloatArray
 from articad.certificates.profile import Forest
+from articad.certificates.rows_last import dot, lengths, over_three
 from articad.certificates.spread import Spread
 from articad.certificates.trail import CUT_A, CUT_B, CUT_RANGE, LEAN, OF_A, OF_B, ROUND, SWUNG, Trail
+from articad.connectors.quaternion import cross
 from articad.interference.surface import Core
 from articad.interference.work import BOX, STEP, WorkBudget
 
@@ -28,6 +30,7 @@ IntArray = NDArray[np.signedinteger[Any]]
 
 ROUNDING_MM = 1e-9  # margin on distances for rounding in the arithmetic of poses
 CHUNK = 4096  # pairs of pieces processed together
+BLOCK = 1024  # of them whose bounds are computed together
 MOTION_SHARE = 1.0  # of the pieces' size: if the motion is larger, the range is cut before the pieces
 LEAST_SHARE = 1e-3  # of the motion in any direction: along the normal of faces in one plane there is nothing to cut
 MOST_PAIRS = 4_000_000  # of pieces, after which a search ends
@@ -130,7 +133,7 @@ class _Pairs:
     def of_all(cls, some: Sequence[_Pairs]) -> _Pairs:
         return cls(*(np.concatenate(column) for column in zip(*((p.a, p.b, p.box, p.number) for p in some), strict=True)))
 
-    def of(self, rows: NDArray[np.bool_] | IntArray) -> _Pairs:
+    def of(self, rows: NDArray[np.bool_] | IntArray | slice) -> _Pairs:
         return _Pairs(self.a[rows], self.b[rows], self.box[rows], self.number[rows])
 
 
@@ -253,22 +256,9 @@ class _Search:
         return rows.of(~never)
 
     def _nodes(self, rows: _Pairs) -> list[_Pairs]:
-        T, box = self.spread.T[rows.box], rows.box
-        R = T[:, :3, :3]
-        # Candidate directions: axes of both boxes, and the line between their centres (separating axis test without edge products).
-        centre = (R @ self.b.centre[rows.b][..., None])[..., 0] + T[:, :3, 3]
-        extent = R.transpose(0, 2, 1) * self.b.half[rows.b][..., None]  # rows: half axes of b's box in a's frame
-        apart = centre - self.a.centre[rows.a]
-        coarse = (_coarse(apart) if self.slides is None else self.slides.across(apart))[:, None]
-        if self.axis is not None and self.slides is None:
-            coarse = np.concatenate([coarse, self._turning(self.a.centre[rows.a], centre)[:, None]], axis=1)
-        u = np.concatenate([np.broadcast_to(_EYE, (len(rows), 3, 3)), R.transpose(0, 2, 1), unit(coarse)], axis=1)
-        thick = (np.abs(u) @ self.a.half[rows.a][..., None])[..., 0] + np.abs(u @ extent.transpose(0, 2, 1)).sum(axis=2)
-        ahead = (u @ apart[..., None])[..., 0]
+        coarse, thick, ahead, shares, motion = _in_blocks(self._bounds_of_nodes, rows)
         # Gap at the centre of the box of motion, minus the bound of the motion: positive for one direction is a proof.
         still = np.abs(ahead) - thick
-        shares = self.spread.first_order(box, u, centre, extent)
-        motion = shares.sum(axis=2) + self.spread.second_order(box, u, centre, self.size_b[rows.b], extent)
         clear = still - motion > self.needed
         left = ~clear.any(axis=1)
         self._settle(rows.of(~left), np.argmax(clear[~left], axis=1), np.sign(ahead[~left]), coarse[~left])
@@ -281,6 +271,28 @@ class _Search:
             moving[:] = False
         shares = shares[left]
         return [*self._cut_range(rows.of(moving), shares[at, best][moving]), *self._cut_pieces(rows.of(~moving))]
+
+    def _bounds_of_nodes(self, rows: _Pairs) -> tuple[FloatArray, ...]:
+        """Return what decides on pairs of boxes, of which D directions are tried.
+
+        Returns:
+            Directions between their centres `(n, 1 or 2, 3)`; half the sum of their sizes along all directions `(n, D)` and the distance of
+            their centres `(n, D)`; and bounds of the motion: shares of first order `(n, D, G)`, and in all `(n, D)` [mm].
+        """
+        T, box = self.spread.T[rows.box], rows.box
+        R = T[:, :3, :3]
+        # Candidate directions: axes of both boxes, and the line between their centres (separating axis test without edge products).
+        centre = (R @ self.b.centre[rows.b][..., None])[..., 0] + T[:, :3, 3]
+        extent = R.transpose(0, 2, 1) * self.b.half[rows.b][..., None]  # rows: half axes of b's box in a's frame
+        apart = centre - self.a.centre[rows.a]
+        coarse = (_coarse(apart) if self.slides is None else self.slides.across(apart))[:, None]
+        if self.axis is not None and self.slides is None:
+            coarse = np.concatenate([coarse, self._turning(self.a.centre[rows.a], centre)[:, None]], axis=1)
+        u = np.concatenate([np.broadcast_to(_EYE, (len(rows), 3, 3)), R.transpose(0, 2, 1), unit(coarse)], axis=1)
+        thick = (np.abs(u) @ self.a.half[rows.a][..., None])[..., 0] + over_three(np.add, np.abs(u @ extent.transpose(0, 2, 1)))
+        ahead = (u @ apart[..., None])[..., 0]
+        shares = self.spread.first_order(box, u, centre, extent)
+        return coarse, thick, ahead, shares, shares.sum(axis=2) + self.spread.second_order(box, u, centre, self.size_b[rows.b], extent)
 
     def _settle(self, rows: _Pairs, best: IntArray, sign: FloatArray, coarse: FloatArray) -> None:
         """Record the directions that settled pieces: axes of a, of b, or between the two."""
@@ -325,28 +337,8 @@ class _Search:
         return [_Pairs(np.repeat(rows.a, 2), np.repeat(rows.b, 2), halves.ravel(), numbers)]
 
     def _triangles(self, rows: _Pairs) -> list[_Pairs]:
-        T, box = self.spread.T[rows.box], rows.box
-        p = self.a.corners[self.a.triangle[rows.a]]
-        q = self.b.corners[self.b.triangle[rows.b]] @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
-        # Candidate directions: both normals, the shortest connection, and the directions of `Slides` or of the turn.
-        # The normal of b's triangle is computed in its own frame, where it is recorded: that of a needle is decided by rounding.
-        nearest, towards = shortest_between(p, q)
-        own = _normals(self.b.corners[self.b.triangle[rows.b]])
-        u = np.stack([_normals(p), (T[:, :3, :3] @ own[..., None])[..., 0], towards], axis=1)
-        if self.slides is not None:
-            u = np.concatenate([u, self.slides.directions(box, p, q)], axis=1)
-        elif self.axis is not None:
-            u = np.concatenate([u, unit(self._turning(p.mean(axis=1), q.mean(axis=1)))[:, None]], axis=1)
-        mine, theirs = u @ p.transpose(0, 2, 1), u @ q.transpose(0, 2, 1)  # (n, D, 3 corners)
-        ahead = theirs.min(axis=2) - mine.max(axis=2) > mine.min(axis=2) - theirs.max(axis=2)
-        u = np.where(ahead[..., None], u, -u)
-        mine, theirs = np.where(ahead[..., None], mine, -mine), np.where(ahead[..., None], theirs, -theirs)
-        # Bound of the motion of each corner; the gap is the least over the corners, since the motion is bounded at each of them.
-        nothing = np.zeros(len(rows))
-        shares = [self.spread.first_order(box, u, q[:, k], None) for k in range(3)]
-        motion = np.stack([shares[k].sum(axis=2) + self.spread.second_order(box, u, q[:, k], nothing) for k in range(3)], axis=2)
-        gap = (theirs - motion).min(axis=2) - mine.max(axis=2)
-        clear = gap > self.needed
+        u, own, nearest, ahead, gap, shares, moved = _in_blocks(self._bounds_of_triangles, rows)
+        box, clear = rows.box, gap > self.needed
         first = np.argmax(clear, axis=1)
         done = clear.any(axis=1)
         for which, kind in ((done & (first != 1), OF_A), (done & (first == 1), OF_B)):
@@ -361,22 +353,58 @@ class _Search:
             if contact is not None:
                 self.outcome.contact, self.outcome.box = contact, int(box[row])
                 return []
-        best = np.argmax((theirs.min(axis=2) - mine.max(axis=2))[left], axis=1)
-        share = np.max([found[left, best] for found in shares], axis=0)
         # if it does not move and yet is not apart, it pierces the other: then there is no distance
-        stuck = motion[left].max(axis=(1, 2)) < self.epsilon / 4
+        stuck = moved[left] < self.epsilon / 4
         stuck[stuck] = [self.boxes.is_reached(box) for box in box[left][stuck].tolist()]
         if stuck.any():
             row = int(left[np.argmax(stuck)])
             self.outcome.box = int(box[row])
             self.outcome.contact = self.boxes.contact(self.outcome.box) or ()
             return []
-        return self._cut_range(rows.of(left), share + 1e-300)
+        return self._cut_range(rows.of(left), shares[left] + 1e-300)
+
+    def _bounds_of_triangles(self, rows: _Pairs) -> tuple[NDArray[Any], ...]:
+        """Return what decides on pairs of triangles, of which D directions are tried.
+
+        Returns:
+            The directions from a to b `(n, D, 3)`; the normals of b in its own frame `(n, 3)`; the distances `(n,)`; whether b is ahead of a
+            along a direction as it was found `(n, D)`; the gaps along directions over the boxes `(n, D)`; for the widest gap at the centres
+            of the boxes the shares of the motion `(n, G)`; and the largest bound of the motion `(n,)` [mm].
+        """
+        T, box = self.spread.T[rows.box], rows.box
+        p = self.a.corners[self.a.triangle[rows.a]]
+        q = self.b.corners[self.b.triangle[rows.b]] @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
+        # Candidate directions: both normals, the shortest connection, and the directions of `Slides` or of the turn.
+        # The normal of b's triangle is computed in its own frame, where it is recorded: that of a needle is decided by rounding.
+        nearest, towards = shortest_between(p, q)
+        own = _normals(self.b.corners[self.b.triangle[rows.b]])
+        u = np.stack([_normals(p), (T[:, :3, :3] @ own[..., None])[..., 0], towards], axis=1)
+        if self.slides is not None:
+            u = np.concatenate([u, self.slides.directions(box, p, q)], axis=1)
+        elif self.axis is not None:
+            u = np.concatenate([u, unit(self._turning(p.mean(axis=1), q.mean(axis=1)))[:, None]], axis=1)
+        mine, theirs = u @ p.transpose(0, 2, 1), u @ q.transpose(0, 2, 1)  # (n, D, 3 corners)
+        before, behind = (over_three(np.minimum, x) - over_three(np.maximum, y) for x, y in ((theirs, mine), (mine, theirs)))
+        ahead = before > behind
+        u, mine, theirs = (np.where(ahead[..., None], part, -part) for part in (u, mine, theirs))
+        # Bound of the motion of each corner; the gap is the least over the corners, since the motion is bounded at each of them.
+        shares = self.spread.first_order(box, u, q, None)  # (n, D, 3 corners, G)
+        motion = shares.sum(axis=3) + self.spread.second_order(box, u, q, np.zeros(len(rows)))
+        gap = over_three(np.minimum, theirs - motion) - over_three(np.maximum, mine)
+        best = np.argmax(np.maximum(before, behind), axis=1)
+        return u, own, nearest, ahead, gap, shares[np.arange(len(rows)), best].max(axis=1), motion.max(axis=(1, 2))
+
+
+def _in_blocks(bounds: Callable[[_Pairs], tuple[NDArray[Any], ...]], rows: _Pairs) -> list[NDArray[Any]]:
+    """Return what a function finds for rows, called for few rows at a time: their arrays stay in the processor's cache."""
+    found = [bounds(rows.of(slice(start, start + BLOCK))) for start in range(0, max(len(rows), 1), BLOCK)]
+    return [column[0] if len(column) == 1 else np.concatenate(column) for column in zip(*found, strict=True)]
 
 
 def unit(v: FloatArray) -> FloatArray:
     """Return vectors `(…, k)` scaled to length 1; zero vectors stay zero."""
-    return np.asarray(v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-300))
+    sizes = lengths(v)[..., None] if v.shape[-1] == 3 else np.linalg.norm(v, axis=-1, keepdims=True)
+    return np.asarray(v / np.maximum(sizes, 1e-300))
 
 
 def _coarse(u: FloatArray) -> FloatArray:
@@ -385,9 +413,9 @@ def _coarse(u: FloatArray) -> FloatArray:
 
 
 def _normals(p: FloatArray) -> FloatArray:
-    n = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
-    length = np.linalg.norm(n, axis=1)
-    return np.asarray(n / np.where(length > 0, length, 1.0)[:, None])
+    n = cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    size = lengths(n)
+    return np.asarray(n / np.where(size > 0, size, 1.0)[:, None])
 
 
 def shortest_between(p: FloatArray, q: FloatArray, *, flat: bool = False) -> tuple[FloatArray, FloatArray]:
@@ -398,35 +426,37 @@ def shortest_between(p: FloatArray, q: FloatArray, *, flat: bool = False) -> tup
     It is reached between two edges, or between a corner and the inside of the other triangle (Ericson, Real-time collision detection,
     5.1). Any direction proves its own gap, so nothing depends on this being exact.
     """
-    d, e = np.roll(p, -1, axis=1) - p, np.roll(q, -1, axis=1) - q
-    between = p[:, :, None] - q[:, None]  # (n, 3, 3, 3): of edge i of p and edge j of q
-    a, f = (d * d).sum(axis=2)[:, :, None], (e * e).sum(axis=2)[:, None]
-    b, c, g = d @ e.transpose(0, 2, 1), (d[:, :, None] * between).sum(axis=3), (e[:, None] * between).sum(axis=3)
+    # all in arrays with the rows last; of edge i of p and edge j of q: (3 components, i, j, n)
+    P, Q = (np.ascontiguousarray(v.transpose(2, 1, 0)) for v in (p, q))
+    D, E = (np.roll(V, -1, axis=1) - V for V in (P, Q))
+    d, e, between = D[:, :, None], E[:, None], P[:, :, None] - Q[:, None]
+    products = (np.roll(p, -1, axis=1) - p) @ (np.roll(q, -1, axis=1) - q).transpose(0, 2, 1)
+    a, f, b = dot(d, d), dot(e, e), np.ascontiguousarray(products.transpose(1, 2, 0))
+    c, g = dot(d, between), dot(e, between)
     below = a * f - b * b
     s = np.clip((b * g - c * f) / np.where(below > 1e-12 * a * f, below, np.inf), 0.0, 1.0)
     t = np.clip((b * s + g) / np.maximum(f, 1e-300), 0.0, 1.0)
     s = np.clip((b * t - c) / np.maximum(a, 1e-300), 0.0, 1.0)
-    edges = t[..., None] * e[:, None] - s[..., None] * d[:, :, None] - between
-    found = edges.reshape(-1, 9, 3)
+    found = (t * e - s * d - between).reshape(3, 9, len(p))
     if not flat:
-        found = np.concatenate([found, _over(p, q), -_over(q, p)], axis=1)
-    squares = (found * found).sum(axis=2)
-    nearest = np.argmin(squares, axis=1)
+        found = np.concatenate([found, _over(p, q).T, -_over(q, p).T], axis=1)
+    squares = dot(found, found)
+    nearest = np.argmin(squares, axis=0)
     rows = np.arange(len(p))
-    length = np.sqrt(squares[rows, nearest])
-    finite = np.isfinite(length) & (length > 0)
-    return length, np.asarray(found[rows, nearest] / np.where(finite, length, 1.0)[:, None])
+    size = np.sqrt(squares[nearest, rows])
+    finite = np.isfinite(size) & (size > 0)
+    return size, np.asarray((found[:, nearest, rows] / np.where(finite, size, 1.0)).T.copy())
 
 
 def _over(p: FloatArray, q: FloatArray) -> FloatArray:
     """Return the vectors from the inside of p perpendicularly to the corners of q, `(n, 3, 3)`; very long if these are not above it."""
     n = _normals(p)
-    up = q - p[:, None, 0]
-    inside = np.ones(up.shape[:2], dtype=bool)
+    up = [q - p[:, None, k] for k in range(3)]
+    inside = np.ones(q.shape[:2], dtype=bool)
     for k in range(3):
         edge = p[:, (k + 1) % 3] - p[:, k]
-        inside &= ((q - p[:, None, k]) @ np.cross(n, edge)[..., None])[..., 0] >= 0
-    return np.asarray(np.where(inside[..., None], (up @ n[..., None]) * n[:, None], 1e150))
+        inside &= (up[k] @ cross(n, edge)[..., None])[..., 0] >= 0
+    return np.asarray(np.where(inside[..., None], (up[0] @ n[..., None]) * n[:, None], 1e150))
 
 
 class Slides:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from articad.arrays import FloatArray, IntArray
+from articad.certificates.rows_last import cross, length, rows_last
 from articad.interference.motion import Chain, Mover
 
 
@@ -114,51 +115,61 @@ class Spread:
     # --- bounds, for rows of (box, point or little box)
 
     def first_order(self, box: IntArray, u: FloatArray, p: FloatArray, extent: FloatArray | None) -> FloatArray:
-        """Bound how far points move along directions to first order, `(n, D, G)` [mm].
+        """Bound how far points move along directions to first order, `(n, D, ..., G)` [mm].
 
         Args:
             box: Which box of the spread, `(n,)`.
             u: Unit directions in a's frame, `(n, D, 3)`.
-            p: Points of b at the box's centre, in a's frame, `(n, 3)`.
+            p: Points of b at the box's centre, in a's frame, `(n, 3)`, or several of them `(n, C, 3)`.
             extent: Half axes of a little box about each point, `(n, 3, 3)`, or None for the points alone.
         """
-        w, v = self.spin[box], self.flow[box]
-        moved = np.abs(u @ (_cross(w, p[:, None]) + v).transpose(0, 2, 1))
-        if extent is not None:  # u · (w × e), for each half axis e of the little box
-            carried = _cross(w[:, :, None], extent[:, None]).reshape(len(p), -1, 3)
-            along = np.abs(u @ carried.transpose(0, 2, 1)).reshape(*moved.shape, 3)
-            moved += along[..., 0] + along[..., 1] + along[..., 2]
-        return np.asarray(moved)
+        n, count = len(p), p[0, ..., 0].size if len(p) else 1
+        w, v = rows_last(self.spin[box]), rows_last(self.flow[box])
+        sides = [] if extent is None else [rows_last(extent)]
+        # one product of matrices for all velocities: those of the points, and u · (w × e) for each half axis e of the little box
+        speeds = np.empty((n, count + 3 * len(sides), w.shape[1], 3))
+        for arms, first in zip((rows_last(p.reshape(n, count, 3)), *sides), (0, count), strict=False):
+            found = cross(w[:, :, None], arms[:, None])
+            for k in range(3):
+                into = speeds[:, first : first + arms.shape[1], :, k].T  # (G, arms, n)
+                into[:] = found[k] if first else found[k] + v[k][:, None]
+        moved = np.abs(u @ speeds.reshape(n, -1, 3).transpose(0, 2, 1)).reshape(*u.shape[:2], -1, w.shape[1])
+        if extent is not None:
+            along = moved[:, :, count:]
+            moved = moved[:, :, :count] + (along[:, :, 0] + along[:, :, 1] + along[:, :, 2])[:, :, None]
+        return np.asarray(moved.reshape(*u.shape[:2], *p.shape[1:-1], w.shape[1]))
 
     def second_order(self, box: IntArray, u: FloatArray, p: FloatArray, size: FloatArray, extent: FloatArray | None = None) -> FloatArray:
-        """Return bounds of the remaining motion along directions, `(n, D)` [mm].
+        """Return bounds of the remaining motion along directions, `(n, D, ...)` [mm].
 
         Args:
             box: Which box of the spread, `(n,)`.
             u: Unit directions in a's frame, `(n, D, 3)`.
-            p: Points of b at the box's centre, in a's frame, `(n, 3)`.
+            p: Points of b at the box's centre, in a's frame, `(n, 3)`, or several of them `(n, C, 3)`.
             size: Radius of a ball about each point, `(n,)` [mm].
             extent: Half axes of a little box in that ball, `(n, 3, 3)`: then the length of a rod does not count for a turn about its own
                 axis.
         """
-        w, v, width = self.omega[box], self.moment[box], self.width[box]
-        reach = self.turns * size[:, None]  # how much faster than the centre a point of the little box moves, by each factor
+        n, count = len(p), p[0, ..., 0].size if len(p) else 1
+        w, v = rows_last(self.omega[box]), rows_last(self.moment[box])
+        width, tilt = rows_last(self.width[box]), rows_last(self.tilt[box])
+        reach = self.turns[:, None] * size  # (F, n): how much faster than the centre a point of the little box moves, by each factor
         if extent is not None:
-            sides = _length(_cross(w[:, :, None], extent[:, None]))
-            reach = np.minimum(reach, sides[..., 0] + sides[..., 1] + sides[..., 2])
-        speed = _length(_cross(w, p[:, None]) + v) + reach
-        turned = width * self.turns
-        share = np.minimum(_length(_cross(u[:, :, None], w[:, None])) + self.tilt[box][:, None], 1.0)  # (n, D, F)
-        total = np.zeros(u.shape[:2])
-        inside = np.zeros(len(p))  # how far the factors inside move the point
-        weighted = share * turned[:, None]
-        before = np.cumsum(weighted, axis=2) - weighted
+            sides = length(cross(w[:, :, None], rows_last(extent)[:, None]))
+            reach = np.minimum(reach, sides[:, 0] + sides[:, 1] + sides[:, 2])
+        moved = cross(w[:, :, None], rows_last(p.reshape(n, count, 3))[:, None])
+        speed = length([moved[k] + v[k][:, None] for k in range(3)]) + reach[:, None]  # (F, C, n)
+        turned = width * self.turns[:, None]
+        share = np.minimum(length(cross(rows_last(u)[:, :, None], w[:, None])) + tilt, 1.0)  # (D, F, n)
+        total = np.zeros((u.shape[1], count, n))
+        inside = np.zeros((count, n))  # how far the factors inside move the point
+        weighted = share * turned
+        before = np.cumsum(weighted, axis=1) - weighted
         for f in range(len(self.factors) - 1, -1, -1):
-            reach = speed[:, f] + (inside if self.turns[f] else 0.0)
-            carried = width[:, f] * reach
-            total += carried[:, None] * (weighted[..., f] + 2 * before[..., f])
+            carried = width[f] * (speed[f] + (inside if self.turns[f] else 0.0))
+            total += carried * (weighted[:, f] + 2 * before[:, f])[:, None]
             inside = inside + carried
-        return np.asarray(total / 2)
+        return np.ascontiguousarray(np.moveaxis(total / 2, 2, 0)).reshape(n, u.shape[1], *p.shape[1:-1])
 
 
 def _tilt(omega: FloatArray, width: FloatArray) -> FloatArray:
