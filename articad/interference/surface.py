@@ -53,7 +53,8 @@ class Surface:
     @cached_property
     def box(self) -> tuple[FloatArray, FloatArray]:
         """Centre and half sides of the bounding box, `(3,)` each."""
-        low, high = self.points.min(axis=0), self.points.max(axis=0)
+        flat = self.corners.reshape(-1, 3)  # not `points`, which takes a sort
+        low, high = flat.min(axis=0), flat.max(axis=0)
         return (low + high) / 2, (high - low) / 2
 
     @cached_property

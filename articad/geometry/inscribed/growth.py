@@ -30,9 +30,9 @@ def grown_planes(facets: Facets, seed: FloatArray, slack: float, size: float) ->
             n, height = (close[first] - seed) / distance[first], float(distance[first])
         least = _least(relative[:, left] @ n)  # how far beyond the seed each triangle is
         areas = facets.areas[left]
-        beyond = [least >= height - min(share * slack, height / 2) - tolerance for share in _SLACKS]
-        gained = [float(areas[mask].sum()) for mask in beyond]
-        mask = beyond[next(index for index, gain in enumerate(gained) if gain >= 0.5 * gained[-1])]
+        bounds = [height - min(share * slack, height / 2) - tolerance for share in _SLACKS]
+        most = float(areas[least >= bounds[-1]].sum())
+        mask = next(mask for mask in (least >= bound for bound in bounds) if float(areas[mask].sum()) >= 0.5 * most)
         mask[0] = True
         reach = float(least[mask].min())  # as far out as its triangles allow
         planes.append([*n, float(n @ seed) + min(height, reach)])
@@ -47,15 +47,17 @@ def _least(values: FloatArray) -> FloatArray:
 
 def held_off(planes: FloatArray, facets: Facets) -> FloatArray:
     """Return the planes moved inwards until each triangle of a finer surface is beyond one of them, by the smallest motion for each."""
-    corners = np.ascontiguousarray(np.moveaxis(facets.corners, 1, 0))
+    a, b, c = np.ascontiguousarray(facets.triangles.T, dtype=np.intp)
     need = np.full(facets.count, np.inf)  # by which a plane would have to move
     which = np.zeros(facets.count, dtype=int)
     left = np.arange(facets.count)
     for index, plane in enumerate(planes):
-        moves = plane[3] - _least(corners[:, left] @ plane[:3])
+        heights = facets.vertices @ plane[:3]
+        moves = plane[3] - np.minimum(np.minimum(heights[a], heights[b]), heights[c])
         better = moves < need[left]
         need[left[better]], which[left[better]] = moves[better], index
-        left = left[moves > 0]
+        among = moves > 0
+        left, a, b, c = left[among], a[among], b[among], c[among]
     moves = np.zeros(len(planes))
     np.maximum.at(moves, which, np.maximum(need, 0.0))
     return np.column_stack([planes[:, :3], planes[:, 3] - moves])

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 
 import manifold3d
 import numpy as np
+from numpy.typing import NDArray
 
 from articad.arrays import FloatArray
 from articad.geometry.mesh import TriMesh
@@ -39,6 +40,8 @@ class Facets:
     """Triangles of a surface.
 
     Attributes:
+        vertices: `(V, 3)` [mm].
+        triangles: Indices of vertices, `(N, 3)`.
         corners: `(N, 3, 3)` [mm].
         normals: Outward unit normals, `(N, 3)`.
         offsets: n·x of each triangle's plane, `(N,)` [mm].
@@ -46,6 +49,8 @@ class Facets:
         inward: Directions in each triangle's plane that point from its edges ab, bc, ca inwards, `(3, N, 3)`.
     """
 
+    vertices: FloatArray
+    triangles: NDArray[np.int32]
     corners: FloatArray
     normals: FloatArray
     offsets: FloatArray
@@ -65,7 +70,7 @@ class Facets:
         normals = twice / np.where(length > 0, length, 1.0)[:, None]
         corners = mesh.vertices[mesh.triangles]
         inward = np.array([np.cross(normals, corners[:, (edge + 1) % 3] - corners[:, edge]) for edge in range(3)])
-        return cls(corners, normals, (normals * corners[:, 0]).sum(axis=1), length / 2, inward)
+        return cls(mesh.vertices, mesh.triangles, corners, normals, (normals * corners[:, 0]).sum(axis=1), length / 2, inward)
 
     @cached_property
     def sides(self) -> _Sides:
