@@ -8,13 +8,13 @@ origin; removing it from the moved body is a subtraction of pseudo-inertias, so 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
-from articad.export.markup import tidy
+from articad.export.markup import rounded, tidy
 from articad.geometry.mass import TRIANGLE_TOLERANCE, MassProperties
 
 CARRIER_MASS_KG = 1e-4  # small compared with any part, but far above the minimum of simulators (1e-15)
@@ -22,7 +22,8 @@ CARRIER_INERTIA_KG_M2 = 1e-7  # of a ball of 50 mm radius and the carrier's mass
 CARRIER_SHARE = 0.05  # largest share of the body's pseudo-inertia that carriers take in any direction, so that it stays physical
 MM_PER_M = 1000.0
 LEAST_MOMENT_KG_M2 = 2e-14  # simulators reject a smaller principal moment: MuJoCo refuses 1e-14
-LEAST_SHARE = 1e-12  # of the sum of second moments, in each direction of a written body: rods and plates have none in theory
+LEAST_SHARE = 1e-9  # of the sum of second moments, in each direction of a written body: rods and plates have none in theory
+DIGITS = 10  # of the largest moment of inertia: further ones depend on the processor, and would turn the axes of nearly equal moments
 DUST_SHARE = 1e-13  # of the largest moment of inertia: smaller products are rounding noise
 _JACOBI_SWEEPS = 8  # Jacobi's method converges quadratically: 3 by 3 matrices need at most 5
 LEAST_RADIUS_M = 1e-3  # radius of gyration of a body along a direction in which its inertia gives a negative second moment
@@ -67,8 +68,8 @@ class Inertial:
         """Return this body, thickened if it is a rod or a plate, so that rounding cannot violate A + B >= C.
 
         The second moment in a direction is half of A + B − C; readers compute the principal moments A, B, C from the printed numbers
-        with an error of about 1e-15 of the largest, and MuJoCo refuses A + B < C. Second moments below half of `LEAST_SHARE` of their
-        sum are raised to `LEAST_SHARE`, which changes no principal moment by more than 2e-12 of the largest.
+        with `DIGITS` digits, and MuJoCo refuses A + B < C. Second moments below half of `LEAST_SHARE` of their sum are raised to
+        `LEAST_SHARE`, which changes no principal moment by more than 2e-9 of the largest.
         """
         moments, axes = np.linalg.eigh(np.trace(self.inertia) / 2 * np.eye(3) - self.inertia)
         least = max(LEAST_SHARE * float(moments.sum()), LEAST_MOMENT_KG_M2)
@@ -79,14 +80,17 @@ class Inertial:
         return Inertial(self.mass, self.com, (inertia + inertia.T) / 2)
 
     def without_dust(self) -> Inertial:
-        """Return this body without rounding noise in its centre of mass and its products of inertia; its moments stay.
+        """Return this body without rounding noise in its centre of mass and its inertia, so that it is the same on every processor.
 
-        Noise of the centre is proportional to the radius of gyration. Products below `DUST_SHARE` of the largest moment are noise.
+        Noise of the centre is proportional to the radius of gyration. The inertia has `DIGITS` digits of its largest moment.
         """
         largest = float(np.abs(self.inertia).max())
-        noise = (np.abs(self.inertia) < DUST_SHARE * largest) & ~np.eye(3, dtype=bool)
-        com = tidy(self.com, math.sqrt(largest / self.mass) if self.mass > 0 else 0.0)
-        return Inertial(self.mass, np.array(com), np.where(noise, 0.0, self.inertia))
+        com = rounded(tidy(self.com, math.sqrt(largest / self.mass) if self.mass > 0 else 0.0))
+        if not 0.0 < largest < math.inf:
+            return replace(self, com=np.array(com))
+        places = DIGITS - 1 - math.floor(math.log10(largest))
+        inertia = [[round(value, places) + 0.0 for value in row] for row in self.inertia.tolist()]
+        return Inertial(self.mass, np.array(com), np.array(inertia))
 
     def principal(self) -> tuple[FloatArray, FloatArray]:
         """Return the principal moments [kg·m²], `(3,)`, and the principal axes as columns of a rotation, `(3, 3)`.
@@ -104,12 +108,12 @@ class Inertial:
                 tau = (A[q, q] - A[p, p]) / (2 * A[p, q])
                 if abs(tau) < DUST_SHARE:
                     tau = 0.0
-                t = (1.0 if tau >= 0 else -1.0) / (abs(tau) + math.hypot(tau, 1.0))
-                c = 1 / math.hypot(t, 1.0)
-                J = np.eye(3)
-                J[p, p] = J[q, q] = c
-                J[p, q], J[q, p] = t * c, -t * c
-                A, R = J.T @ A @ J, R @ J
+                t = (1.0 if tau >= 0 else -1.0) / (abs(tau) + math.sqrt(tau * tau + 1.0))
+                c = 1 / math.sqrt(t * t + 1.0)
+                # J.T @ A @ J and R @ J column by column: a product of matrices rounds as the processor's library does
+                for M in (A, R):
+                    M[:, p], M[:, q] = c * M[:, p] - t * c * M[:, q], t * c * M[:, p] + c * M[:, q]
+                A[p], A[q] = c * A[p] - t * c * A[q], t * c * A[p] + c * A[q]
         return np.diag(A).copy(), R
 
     @property

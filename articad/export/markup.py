@@ -48,6 +48,11 @@ def tidy(values: Iterable[float], scale: float = 1.0) -> list[float]:
     return found
 
 
+def rounded(values: Iterable[float]) -> list[float]:
+    """Return lengths in m, or components of unit vectors, with `DUST_DIGITS` digits after the point."""
+    return [round(float(value), DUST_DIGITS) + 0.0 for value in values]
+
+
 def comment(text: str) -> Any:
     """Return a comment with any text in one line: names and reasons of waivers are anybody's, and a comment may hold no two hyphens in a row."""
     line = " ".join(escaped(text).splitlines())

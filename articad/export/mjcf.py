@@ -31,7 +31,7 @@ from articad.export.lowering import (
     lower,
     metres,
 )
-from articad.export.markup import child, comment, document, number, numbers, rgba, tidy, wxyz
+from articad.export.markup import child, comment, document, number, numbers, rgba, rounded, tidy, wxyz
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mjcf_again import Again
@@ -522,7 +522,7 @@ def _inertial(body: Any, inertial: Inertial) -> None:
     """Write mass properties by principal axes, which every reader of MJCF knows: PyBullet ignores `fullinertia`."""
     inertial = inertial.inside_bounds().without_dust()
     moments, axes = inertial.principal()
-    quat = tidy(wxyz(SE3.from_rotation(axes)))
+    quat = rounded(wxyz(SE3.from_rotation(axes)))
     turned = {"quat": numbers(quat)} if quat[0] != 1 else {}
     child(body, "inertial", {"pos": numbers(inertial.com)} | turned | {"mass": number(inertial.mass), "diaginertia": numbers(moments)})
 

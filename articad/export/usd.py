@@ -23,7 +23,7 @@ from articad.export.gltf import shaded
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.lowering import Follows, LoweredModel, lower
-from articad.export.markup import number
+from articad.export.markup import number, rounded
 from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
 from articad.export.product import of_the_product
@@ -282,7 +282,7 @@ def _body(
         "{",
         *_indented(_mass(mass)),
         f"    token[] semantics:labels:class = ['{name}']",
-        f"    double3 xformOp:translate = {_tuple(T.translation / MM_PER_M)}",
+        f"    double3 xformOp:translate = {_tuple(rounded(T.translation / MM_PER_M))}",
         f"    quatd xformOp:orient = {_quaternion(T)}",
         '    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
     ]
@@ -312,7 +312,7 @@ def _mass(mass: MassProperties | None) -> list[str]:
     moments, axes = Inertial.from_part(mass, SE3.identity()).possible().without_dust().principal()
     return [
         f"float physics:mass = {number(mass.mass)}",
-        f"point3f physics:centerOfMass = {_tuple(mass.com / MM_PER_M)}",
+        f"point3f physics:centerOfMass = {_tuple(rounded(mass.com / MM_PER_M))}",
         f"float3 physics:diagonalInertia = {_tuple(moments)}",
         f"quatf physics:principalAxes = {_quaternion(SE3.from_rotation(axes))}",
     ]
@@ -347,7 +347,7 @@ def _form(shape: Shape, name: str, surface: str | None) -> list[str] | None:
         "{",
         *_indented(fields),
         *_bound(surface, "physics"),
-        f"    double3 xformOp:translate = {_tuple(T.translation / MM_PER_M)}",
+        f"    double3 xformOp:translate = {_tuple(rounded(T.translation / MM_PER_M))}",
         f"    quatd xformOp:orient = {_quaternion(T)}",
         f"    uniform token[] xformOpOrder = [{order}]",
         "}",
@@ -554,7 +554,10 @@ def _joint_prim(
     places = [
         line
         for i, T in enumerate(frames)
-        for line in (f"point3f physics:localPos{i} = {_tuple(T.translation / MM_PER_M)}", f"quatf physics:localRot{i} = {_quaternion(T)}")
+        for line in (
+            f"point3f physics:localPos{i} = {_tuple(rounded(T.translation / MM_PER_M))}",
+            f"quatf physics:localRot{i} = {_quaternion(T)}",
+        )
     ]
     return [*head, "{", *_indented([*relations, *places, *extra]), "}"]
 
@@ -577,7 +580,7 @@ def _tuple(values: Iterable[float]) -> str:
 
 
 def _quaternion(T: SE3) -> str:
-    x, y, z, w = T.quaternion
+    x, y, z, w = rounded(T.quaternion)
     return _tuple([w, x, y, z])
 
 

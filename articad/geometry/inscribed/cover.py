@@ -13,12 +13,12 @@ from articad.arrays import FloatArray
 from articad.geometry.inscribed.growth import grown_planes, held_off
 from articad.geometry.inscribed.piece import Grown, Piece, fewer_corners, polytope
 from articad.geometry.inscribed.round_bodies import round_bodies
-from articad.geometry.inscribed.surface import INSIDE_MM, Facets, encloses, manifold_of, mesh_of, nearest
+from articad.geometry.inscribed.surface import INSIDE_MM, Facets, encloses, manifold_of, mesh_of, nearest, steady, steady_size
 from articad.geometry.mesh import TriMesh
 
 MOST_PIECES: Final = 32
 BOUND_MM, BOUND_SHARE = 0.5, 0.01  # how far the solid may extend beyond its pieces: the larger of the two; the share is of its diagonal
-SCHEME: Final = "articad.inscribed/3"  # must change with anything that changes pieces
+SCHEME: Final = "articad.inscribed/4"  # must change with anything that changes pieces
 _SLACK_MM, _SLACK_SHARE = 0.25, 0.004  # how far a plane may move inwards: the larger of the two; the share is of the diagonal
 _OF_DEPTH = 0.5  # of the material below a point: at thin walls, less may be missing
 _SAMPLES = 800  # points of the surface at which the pieces are measured, and half as many corners
@@ -129,14 +129,14 @@ class _Cover:
         """Add pieces around seeds below a point and two others near it to the candidates."""
         share, slack = 2 * _DEPTHS[self.visits[target]], self.slack * _TIGHTER[self.visits[target]]
         self.visits[target] += 1
-        near = open_[np.argsort(np.linalg.norm(self.points[open_] - self.points[target], axis=1))]
+        near = open_[np.argsort(steady(np.linalg.norm(self.points[open_] - self.points[target], axis=1)), kind="stable")]
         chosen = [target, *near[[len(near) // 8, len(near) // 2]].tolist()][:_TRIES]
         for index in dict.fromkeys(chosen):
             for one in self._around(self.points[index] + share * (self.seeds[index] - self.points[index]), slack):
                 self.pool.append(_Candidate(one, one.distance(self.points), checked=self.same))
 
     def _best(self, candidates: list[_Candidate], uncovered: NDArray[np.bool_]) -> _Candidate | None:
-        return max(candidates, key=lambda one: (self._gain(one, uncovered), one.grown.volume), default=None)
+        return max(candidates, key=lambda one: (self._gain(one, uncovered), steady_size(one.grown.volume)), default=None)
 
     def _gain(self, one: _Candidate, uncovered: NDArray[np.bool_]) -> int:
         return int(np.count_nonzero(uncovered & (one.far <= self.limits)))
@@ -165,7 +165,7 @@ class _Cover:
         """Return the index of the farthest point; without a piece, of the one with most material below it."""
         if not self.found:
             return int(self.depths[open_].argmax())
-        return int((self.far[open_] / self.limits[open_]).argmax())
+        return int(steady(self.far[open_] / self.limits[open_]).argmax())
 
     def _around(self, seed: FloatArray, slack: float) -> list[Grown]:
         """Return the piece around a seed, and the one around its centre."""
@@ -224,7 +224,7 @@ class _Cover:
         far = np.array([one.distance(self.points) for one in found])
         limits = np.maximum(self.limits, far.min(axis=0))  # what all pieces together reach
         keep = np.ones(len(found), dtype=bool)
-        for index in np.argsort([one.volume for one in found]):
+        for index in np.argsort([steady_size(one.volume) for one in found], kind="stable"):
             keep[index] = False
             if not keep.any() or (far[keep].min(axis=0) > limits).any():
                 keep[index] = True
@@ -261,14 +261,14 @@ def _samples(facets: Facets, body: manifold3d.Manifold, size: float) -> tuple[Fl
             seeds.append(starts[index] - normals[index] * depth / 2)
             depths.append(depth)
             kept.append(index)
-    return points[kept], np.array(seeds).reshape(-1, 3), np.array(depths)
+    return points[kept], np.array(seeds).reshape(-1, 3), steady(np.array(depths))
 
 
 def _distance_to(points: FloatArray, grown: list[Grown], placed: list[TriMesh]) -> float:
     """Return the largest distance of points from the nearest piece [mm]."""
     least = np.array([one.distance(points) for one in grown])
     far = np.flatnonzero(least.min(axis=0) > 0)
-    far = far[np.argsort(-least[:, far].min(axis=0))]
+    far = far[np.argsort(-least[:, far].min(axis=0), kind="stable")]
     facets = [Facets.of(mesh) for mesh in placed]
     worst = 0.0
     for index in far[:300].tolist():

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from articad.arrays import FloatArray
-from articad.geometry.inscribed.surface import Facets, nearest
+from articad.geometry.inscribed.surface import Facets, nearest, steady
 
 _SLACKS = (0.0, 0.04, 0.25, 0.5, 1.0)  # shares of the slack by which a plane moves inwards: the values that are tried
+_HALF = 0.5 - 1e-9  # of the gain of the largest slack: a smaller slack that gains so much is preferred, also where it is half exactly
 _OWN = 0.3  # a triangle's own plane is used if its distance from the seed is at least this share of the triangle's
 
 
@@ -19,7 +20,7 @@ def grown_planes(facets: Facets, seed: FloatArray, slack: float, size: float) ->
     if distance.min() < 1e-6 * size:
         return None
     heights = facets.offsets - facets.normals @ seed  # depth of the seed below each triangle's plane
-    left = np.lexsort((-heights, np.round(distance, 6)))  # triangles in front of all planes so far, nearest first
+    left = np.lexsort((-np.round(heights, 6), np.round(distance, 6)))  # triangles in front of all planes so far, nearest first
     relative = np.moveaxis(facets.corners, 1, 0) - seed  # (3, N, 3): the first corners, the second, the third
     planes = []
     while len(left):
@@ -32,7 +33,7 @@ def grown_planes(facets: Facets, seed: FloatArray, slack: float, size: float) ->
         areas = facets.areas[left]
         bounds = [height - min(share * slack, height / 2) - tolerance for share in _SLACKS]
         most = float(areas[least >= bounds[-1]].sum())
-        mask = next(mask for mask in (least >= bound for bound in bounds) if float(areas[mask].sum()) >= 0.5 * most)
+        mask = next(mask for mask in (least >= bound for bound in bounds) if float(areas[mask].sum()) >= _HALF * most)
         mask[0] = True
         reach = float(least[mask].min())  # as far out as its triangles allow
         planes.append([*n, float(n @ seed) + min(height, reach)])
@@ -53,7 +54,7 @@ def held_off(planes: FloatArray, facets: Facets) -> FloatArray:
     left = np.arange(facets.count)
     for index, plane in enumerate(planes):
         heights = facets.vertices @ plane[:3]
-        moves = plane[3] - np.minimum(np.minimum(heights[a], heights[b]), heights[c])
+        moves = steady(plane[3] - np.minimum(np.minimum(heights[a], heights[b]), heights[c]))
         better = moves < need[left]
         need[left[better]], which[left[better]] = moves[better], index
         among = moves > 0

@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
-from articad.geometry.inscribed.surface import mesh_of
+from articad.geometry.inscribed.surface import mesh_of, steady
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
 from articad.geometry.shapes import box, sphere
@@ -60,7 +60,7 @@ class Grown:
         A point at heights h and k above two planes with c = n·m, and above both edges of the nearest point's normal cone, is at the
         distance √((h² + k² − 2chk) / (1 − c²)) from their wedge (Karush-Kuhn-Tucker with both multipliers positive).
         """
-        heights = points @ self.planes[:, :3].T - self.planes[:, 3]
+        heights = steady(points @ self.planes[:, :3].T - self.planes[:, 3])
         first = heights.argmax(axis=1)
         h = heights[np.arange(len(points)), first]
         outside = np.flatnonzero(h > 0)
@@ -74,7 +74,7 @@ class Grown:
             squares = h[outside] ** 2
             np.maximum.at(squares, rows, (one * one + other * other - 2 * c * one * other) / (1 - c * c))
             far[outside] = np.sqrt(squares)
-        return np.asarray(far)
+        return steady(far)
 
 
 def polytope(planes: FloatArray, seed: FloatArray) -> Grown | None:
@@ -83,7 +83,7 @@ def polytope(planes: FloatArray, seed: FloatArray) -> Grown | None:
         return None
     try:
         corners = HalfspaceIntersection(np.column_stack([planes[:, :3], -planes[:, 3]]), seed).intersections
-        corners = np.round(corners[np.isfinite(corners).all(axis=1)], DIGITS) + 0.0
+        corners = np.unique(np.round(corners[np.isfinite(corners).all(axis=1)], DIGITS) + 0.0, axis=0)
         hull = ConvexHull(corners)
     except QhullError:
         return None
@@ -101,12 +101,12 @@ def fewer_corners(one: Grown) -> Grown:
     if one.piece.primitive is not None or len(corners) <= _MOST_CORNERS:
         return one
     directions = sphere(1.0, 4).vertices
-    chosen = list(dict.fromkeys((corners @ directions.T).argmax(axis=0).tolist()))
+    chosen = list(dict.fromkeys(steady(corners @ directions.T).argmax(axis=0).tolist()))
     planes = np.zeros((0, 4))
     while len(chosen) < _MOST_CORNERS:
         hull = ConvexHull(corners[chosen])
         planes = np.column_stack([hull.equations[:, :3], -hull.equations[:, 3]])
-        heights = (corners @ planes[:, :3].T - planes[:, 3]).max(axis=1)
+        heights = steady(corners @ planes[:, :3].T - planes[:, 3]).max(axis=1)
         if heights.max() <= 10.0**-DIGITS:
             break
         chosen.append(int(heights.argmax()))
@@ -143,15 +143,15 @@ def _box_piece(first: FloatArray, edges: FloatArray) -> Piece:
     """Return the box spanned by a corner and three edges; its axes are those of the solid's frame if they agree."""
     lengths = np.linalg.norm(edges, axis=1)
     axes = edges / lengths[:, None]
-    order, free = [], [0, 1, 2]
+    order, free, sizes = [], [0, 1, 2], steady(np.abs(axes))
     for axis in range(2):
-        best = max(free, key=lambda index: abs(float(axes[index, axis])))
+        best = max(free, key=lambda index: float(sizes[index, axis]))
         free.remove(best)
         order.append(best)
     order += free
     axes, lengths = axes[order], lengths[order]
     for index in (0, 1):
-        if axes[index][int(np.abs(axes[index]).argmax())] < 0:
+        if axes[index][int(steady(np.abs(axes[index])).argmax())] < 0:
             axes[index] = -axes[index]
     x, z = whole(axes[0]), whole(np.cross(axes[0], axes[1]))
     middle = first + edges.sum(axis=0) / 2

@@ -9,7 +9,7 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.geometry.faces import smooth_patches
 from articad.geometry.inscribed.piece import DIGITS, Grown, Piece, whole
-from articad.geometry.inscribed.surface import Facets, encloses, nearest
+from articad.geometry.inscribed.surface import Facets, encloses, nearest, steady, steady_size
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
 from articad.geometry.shapes import cylinder, sphere
@@ -41,7 +41,7 @@ def _smooth_faces(mesh: TriMesh, facets: Facets) -> list[NDArray[np.intp]]:
     label = smooth_patches(mesh) if mesh.face is None else np.asarray(mesh.face)
     order = np.argsort(label, kind="stable")
     groups = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
-    groups.sort(key=lambda group: -float(facets.areas[group].sum()))
+    groups.sort(key=lambda group: -steady_size(float(facets.areas[group].sum())))
     return [group for group in groups[:200] if len(group) >= 8 and float((facets.normals[group] @ facets.normals[group[0]]).min()) < 0.99]
 
 
@@ -68,8 +68,8 @@ def _ball(facets: Facets, corners: FloatArray, normals: FloatArray, slack: float
 
 def _cylinder(facets: Facets, corners: FloatArray, normals: FloatArray, axis: FloatArray, slack: float) -> Grown | None:
     """Return the cylinder through all these corners, if the solid contains it between the ends of the face."""
-    axis = whole(axis if axis[int(np.abs(axis).argmax())] > 0 else -axis)
-    side = np.eye(3)[int(np.abs(axis).argmin())]
+    axis = whole(axis if axis[int(steady(np.abs(axis)).argmax())] > 0 else -axis)
+    side = np.eye(3)[int(steady(np.abs(axis)).argmin())]
     x = side - (side @ axis) * axis
     x /= np.linalg.norm(x)
     y = np.cross(axis, x)

@@ -15,6 +15,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.winding import winding_numbers
 
 INSIDE_MM: Final = 1e-4  # by which rounding may move a piece outside the mesh
+_DECIDE = 9  # digits that decide between alternatives; further ones depend on the processor, and solids are often symmetric
 
 
 class _Sides(NamedTuple):
@@ -100,6 +101,16 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return a·b of vectors in columns, `(E, 3, N)` to `(E, N)`."""
     products = a * b
     return np.asarray(products[:, 0] + products[:, 1] + products[:, 2])
+
+
+def steady(lengths: FloatArray) -> FloatArray:
+    """Return lengths [mm], or numbers near 1, rounded so that equal ones are equal on every processor."""
+    return np.asarray(np.round(lengths, _DECIDE))
+
+
+def steady_size(size: float) -> float:
+    """Return an area or a volume rounded in the same way: to as many significant digits."""
+    return float(f"{size:.{_DECIDE}g}")
 
 
 def encloses(facets: Facets, point: FloatArray) -> bool:
