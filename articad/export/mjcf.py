@@ -515,7 +515,7 @@ def _material(color: str) -> str:
 
 
 def _placement(T: SE3) -> dict[str, str]:
-    return {"pos": numbers(tidy(T.translation)), "quat": numbers(tidy(wxyz(T)))}
+    return {"pos": numbers(rounded(T.translation)), "quat": numbers(rounded(wxyz(T)))}
 
 
 def _inertial(body: Any, inertial: Inertial) -> None:
@@ -548,7 +548,7 @@ def _dynamics(freedom: AxisMotion) -> dict[str, str]:
 def _joint(freedom: AxisMotion, *, foreign: bool = False) -> dict[str, str]:
     """Return the attributes of a hinge or slide; the effort limits the actuators' forces if a foreign file states one."""
     turn = freedom.kind == "turn"
-    attributes = {"name": freedom.name, "type": "hinge" if turn else "slide", "axis": numbers(tidy(freedom.axis))}
+    attributes = {"name": freedom.name, "type": "hinge" if turn else "slide", "axis": numbers(rounded(freedom.axis))}
     bounds = _range(freedom)
     if bounds is not None:  # "limited" follows from the range in MuJoCo, not in PyBullet
         attributes |= {"limited": "true", "range": bounds}

@@ -19,7 +19,7 @@ from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pai
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import AxisMotion, Follows, Link, LoweredJoint, LoweredModel, Placed, lower
-from articad.export.markup import child, document, number, numbers, rgba, rpy, tidy
+from articad.export.markup import child, document, number, numbers, rgba, rounded, rpy, tidy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mimic import linear_followers
@@ -364,7 +364,7 @@ def _shape(link: Any, tag: str, placed: Placed, name: str, files: MeshFiles, kee
 
 
 def _origin(parent: Any, T: SE3) -> None:
-    child(parent, "origin", {"xyz": numbers(tidy(T.translation)), "rpy": numbers(tidy(rpy(T)))})
+    child(parent, "origin", {"xyz": numbers(rounded(T.translation)), "rpy": numbers(rounded(rpy(T)))})
 
 
 def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper: _Keeper) -> None:
@@ -379,7 +379,7 @@ def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper:
     for freedom, near, far in zip(joint.freedoms, links[:-1], links[1:], strict=True):
         element = child(root, "joint", {"name": freedom.name, "type": _type(freedom)})
         _ends(element, T, near, far)
-        child(element, "axis", {"xyz": numbers(tidy(freedom.axis))})
+        child(element, "axis", {"xyz": numbers(rounded(freedom.axis))})
         limit = _limit(freedom, keeper)
         if limit:
             child(element, "limit", limit)

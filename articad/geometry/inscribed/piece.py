@@ -18,6 +18,10 @@ from articad.geometry.shapes import box, sphere
 
 _MOST_CORNERS = 64  # of a piece: the limit of PhysX
 DIGITS = 6  # digits of mm in a piece's corners
+_WEDGE = (
+    1e-6  # squared sine of the smallest angle between planes that form a wedge: normals of one face differ by the rounding of its corners
+)
+_TIE_MM = 1e-3  # heights above planes of one face differ by less: its corners are rounded
 _FLAT = 1e-5  # a box that is thinner than this share of its length has no certain axes
 
 
@@ -60,14 +64,14 @@ class Grown:
         A point at heights h and k above two planes with c = n·m, and above both edges of the nearest point's normal cone, is at the
         distance √((h² + k² − 2chk) / (1 − c²)) from their wedge (Karush-Kuhn-Tucker with both multipliers positive).
         """
-        heights = steady(points @ self.planes[:, :3].T - self.planes[:, 3])
-        first = heights.argmax(axis=1)
+        heights = points @ self.planes[:, :3].T - self.planes[:, 3]
+        first = (heights > heights.max(axis=1, keepdims=True) - _TIE_MM).argmax(axis=1)  # the first of nearly equal ones
         h = heights[np.arange(len(points)), first]
         outside = np.flatnonzero(h > 0)
         far = h.copy()
         if len(outside):
             cosines = self.planes[:, :3] @ self.planes[:, :3].T
-            steep = np.where(1 - cosines * cosines > 1e-9, cosines, np.inf)  # parallel planes form no wedge
+            steep = np.where(1 - cosines * cosines > _WEDGE, cosines, np.inf)  # parallel planes form no wedge
             rows, second = np.nonzero(heights[outside] > steep[first[outside]] * h[outside, None])
             points_of = outside[rows]
             one, other, c = h[points_of], heights[points_of, second], cosines[first[points_of], second]
