@@ -14,6 +14,7 @@ from articad.texts import escaped
 
 DUST_DIGITS = 12  # a billionth of a mm
 DUST = 0.5 * 10.0**-DUST_DIGITS
+_DIGITS_OF_R = 15  # of the components of a rotation
 
 
 def number(value: float) -> str:
@@ -62,11 +63,14 @@ def comment(text: str) -> Any:
 def rpy(T: SE3) -> tuple[float, float, float]:
     """Return (roll, pitch, yaw) with R = Rz(yaw) · Ry(pitch) · Rx(roll) [rad], exact also at pitch = ±90°.
 
-    Roll is computed from R with the yaw removed, so that the product is R even where the two cannot be separated.
+    Roll is computed from R with the yaw removed, so that the product is R even where the two cannot be separated. There yaw has only the
+    digits that are certain, so that rounding does not divide the sum of both otherwise on another processor.
     """
     R = T.rotation
-    pitch = math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0]))
-    yaw = math.atan2(R[1, 0], R[0, 0])
+    level = math.hypot(R[0, 0], R[1, 0])
+    pitch = math.atan2(-R[2, 0], level)
+    certain = _DIGITS_OF_R + math.floor(math.log10(level)) if level > 0 else -1
+    yaw = round(math.atan2(R[1, 0], R[0, 0]), certain) if certain > 0 else 0.0
     s, c = math.sin(yaw), math.cos(yaw)
     roll = math.atan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
     return roll, pitch, yaw
