@@ -27,11 +27,34 @@ SLOW = Path(__file__).with_name("slow.txt")
 """Test functions that take longer than `scripts/durations.py` allows a fast one, as it measured them."""
 
 
+SAMPLED = Path(__file__).with_name("sampled.txt")
+"""Test functions of which CI runs some parameters only, with their number."""
+
+
+def leave_to_the_long_run(items: list[pytest.Item]) -> None:
+    """Mark the tests with `soak` of which `sampled.txt` says that CI does not run them."""
+    of_function: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("soak") is None:
+            of_function.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for line in SAMPLED.read_text(encoding="utf-8").splitlines():
+        if line.startswith("#"):
+            continue
+        number, name = line.split(maxsplit=1)
+        mine = [item for item in of_function.get(name.partition("[")[0], []) if item.nodeid.startswith(name)]
+        stay = {index * len(mine) // int(number) for index in range(int(number))}
+        for index, item in enumerate(mine):
+            if index not in stay:
+                item.add_marker(pytest.mark.soak)
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--fast", action="store_true", help="leave out the tests that tests/slow.txt lists")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    leave_to_the_long_run(items)
     if not config.getoption("--fast"):
         return
     slow = {line.split()[1] for line in SLOW.read_text(encoding="utf-8").splitlines() if not line.startswith("#")}

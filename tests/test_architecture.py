@@ -362,3 +362,11 @@ def test_the_package_s_version_is_its_module_s() -> None:
 def test_the_typed_marker_is_shipped() -> None:
     assert (PACKAGE / "py.typed").is_file()
     assert importlib.import_module("articad").__file__ == str(PACKAGE / "__init__.py")
+
+
+def test_every_test_that_is_left_to_the_long_run_exists() -> None:
+    lines = [line.split(maxsplit=1)[1] for line in (ROOT / "tests" / "sampled.txt").read_text().splitlines() if not line.startswith("#")]
+    assert len(lines) > 20
+    for name in lines:
+        file, function = name.partition("[")[0].split("::")
+        assert f"def {function}(" in (ROOT / file).read_text(), name
