@@ -54,6 +54,11 @@ def rounded(values: Iterable[float]) -> list[float]:
     return [round(float(value), DUST_DIGITS) + 0.0 for value in values]
 
 
+def rounded_angles(values: Iterable[float]) -> list[float]:
+    """Return angles [rad] of `DUST_DIGITS` digits that are whole degrees where they were: 90° is π/2 in all of its digits."""
+    return [math.radians(round(math.degrees(value), DUST_DIGITS - 1)) + 0.0 for value in values]
+
+
 def comment(text: str) -> Any:
     """Return a comment with any text in one line: names and reasons of waivers are anybody's, and a comment may hold no two hyphens in a row."""
     line = " ".join(escaped(text).splitlines())

@@ -16,7 +16,7 @@ from articad.export.follow import followers, leaders
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import AxisMotion, Follows, Link, LoweredJoint, LoweredModel, Placed, ground_is_world, lower
-from articad.export.markup import child, document, number, numbers, rgba, rounded, rpy
+from articad.export.markup import child, document, number, numbers, rgba, rounded, rounded_angles, rpy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.product import of_the_product
@@ -328,7 +328,7 @@ def _motion(freedom: AxisMotion) -> SE3:
 
 
 def _pose(T: SE3) -> str:
-    return f"{numbers(rounded(T.translation))} {numbers(rounded(rpy(T)))}"
+    return f"{numbers(rounded(T.translation))} {numbers(rounded_angles(rpy(T)))}"
 
 
 def _inertial(link: Any, inertial: Inertial) -> None:

@@ -19,7 +19,7 @@ from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pai
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import AxisMotion, Follows, Link, LoweredJoint, LoweredModel, Placed, lower
-from articad.export.markup import child, document, number, numbers, rgba, rounded, rpy, tidy
+from articad.export.markup import child, document, number, numbers, rgba, rounded, rounded_angles, rpy, tidy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mimic import linear_followers
@@ -364,7 +364,7 @@ def _shape(link: Any, tag: str, placed: Placed, name: str, files: MeshFiles, kee
 
 
 def _origin(parent: Any, T: SE3) -> None:
-    child(parent, "origin", {"xyz": numbers(rounded(T.translation)), "rpy": numbers(rounded(rpy(T)))})
+    child(parent, "origin", {"xyz": numbers(rounded(T.translation)), "rpy": numbers(rounded_angles(rpy(T)))})
 
 
 def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper: _Keeper) -> None:

@@ -12,7 +12,7 @@ from lxml import etree
 
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
-from articad.export.inertia import CARRIER_INERTIA_KG_M2, CARRIER_MASS_KG, Inertial, is_possible
+from articad.export.inertia import CARRIER_INERTIA_KG_M2, CARRIER_MASS_KG, LEAST_SHARE, Inertial, is_possible
 from articad.export.lowering import lower
 from articad.export.mjcf import RESERVED, write_mjcf
 from articad.export.urdf import write_urdf
@@ -141,7 +141,9 @@ def test_mujoco_and_bullet_read_the_inertia_of_every_link_from_mjcf(seed: int, t
         axes = SE3.from_quaternion([*xyz, w]).rotation
         largest = np.abs(inertial.inertia).max()
         assert model.body_mass[body] == pytest.approx(inertial.mass, rel=1e-15)
-        assert np.allclose((axes * model.body_inertia[body]) @ axes.T, inertial.inertia, rtol=0, atol=1e-12 * largest)
+        assert np.allclose(
+            (axes * model.body_inertia[body]) @ axes.T, inertial.inertia, rtol=0, atol=5e-10 * largest
+        )  # written with 10 digits
 
     bullet = pytest.importorskip("pybullet", reason="PyBullet has no wheel for this Python")
     client = bullet.connect(bullet.DIRECT)
@@ -196,4 +198,4 @@ def test_rods_and_plates_load_in_mujoco_however_they_are_turned(write: Any, scal
             assert second.min() > 0
             name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body)
             if case == 0 and write is write_mjcf and name in expected:  # no loop takes half of it
-                assert sorted(second) == pytest.approx(expected[name], abs=1e-11 * scale + 1e-13)
+                assert sorted(second) == pytest.approx(expected[name], abs=4 * LEAST_SHARE * scale + 1e-13)
