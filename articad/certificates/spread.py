@@ -133,7 +133,8 @@ class Spread:
             for k in range(3):
                 into = speeds[:, first : first + arms.shape[1], :, k].T  # (G, arms, n)
                 into[:] = found[k] if first else found[k] + v[k][:, None]
-        moved = np.abs(u @ speeds.reshape(n, -1, 3).transpose(0, 2, 1)).reshape(*u.shape[:2], -1, w.shape[1])
+        vectors = speeds.shape[1]
+        moved = np.abs(u @ speeds.reshape(n, vectors * w.shape[1], 3).transpose(0, 2, 1)).reshape(*u.shape[:2], vectors, w.shape[1])
         if extent is not None:
             along = moved[:, :, count:]
             moved = moved[:, :, :count] + (along[:, :, 0] + along[:, :, 1] + along[:, :, 2])[:, :, None]

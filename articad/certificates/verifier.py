@@ -246,8 +246,7 @@ def cross(a: Any, b: Any) -> Any:
 
 def length(v: Any) -> Any:
     """Return the lengths of vectors `(..., 3)`: a sum over so short an axis is slower by far."""
-    x, y, z = (v[..., k] for k in range(3))
-    return np.sqrt(x * x + y * y + z * z)
+    return np.sqrt(v[..., 0] * v[..., 0] + v[..., 1] * v[..., 1] + v[..., 2] * v[..., 2])
 
 
 def spins(axes: Any) -> Any:
@@ -330,8 +329,7 @@ def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: A
     across, width, turns = (all_spins @ u[..., None]).reshape(v.shape), np.abs(along).sum(2) + aside, turned > 0
     speeds = p @ across.swapaxes(1, 2) + (v @ u[..., None]).swapaxes(1, 2)
     reach = length(v[:, None] - (p @ all_spins.swapaxes(1, 2)).reshape(*p.shape[:2], *v.shape[1:]))
-    inside = np.zeros(p.shape[:2])
-    moved = np.abs(speeds @ along).sum(2) + (np.abs(speeds) @ aside[..., None])[..., 0]
+    moved, inside = np.abs(speeds @ along).sum(2) + (np.abs(speeds) @ aside[..., None])[..., 0], np.zeros(p.shape[:2])
     tilt = np.minimum(length(across) + outer, 1.0) * turned
     share = np.cumsum(tilt, axis=1) - tilt / 2
     for f in reversed(range(tilt.shape[1])):
