@@ -28,7 +28,8 @@ MeshKind = Literal["stl", "obj"]
 MM_TO_M = 0.001  # the scale that formats apply to the files
 DRAWN_TRIANGLES = 5000  # target size of a visual mesh, within the next bound
 DRAWN_SHARE, MOST_SHARE = 5e-4, 8e-3  # of its diagonal: deviation of its surface at first, and at most
-_SCHEME: Final = "articad.drawn/1"  # must change with anything that changes visual meshes
+DRAWN_MM = 0.05  # deviation at first of a mesh in a file: a pin and its bore, 0.1 mm apart, share no volume there either
+_SCHEME: Final = "articad.drawn/2"  # must change with anything that changes visual meshes
 _FILE: Final = "drawn.npz"
 
 
@@ -42,8 +43,8 @@ class Drawn(NamedTuple):
 def drawn(mesh: TriMesh, least: float = 0.0, cache: BuildCache | None = None) -> Drawn:
     """Return a mesh with few triangles in place of one that is finer than drawings need.
 
-    The surface moves by 1/2000 of the mesh's diagonal, on round faces about 0.1 rad between facets, and by more as long as there are
-    more than `DRAWN_TRIANGLES`.
+    The surface moves by 1/2000 of the mesh's diagonal, on round faces about 0.1 rad between facets, by no more than `DRAWN_MM` unless
+    `least` permits it, and by more as long as there are more than `DRAWN_TRIANGLES`.
 
     Args:
         mesh: The mesh.
@@ -88,7 +89,7 @@ def _simplified(mesh: TriMesh, least: float) -> Drawn | None:
     if body is None or body.status() != manifold3d.Error.NoError or body.volume() <= 0:
         return None
     size = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
-    share = min(max(DRAWN_SHARE, least / size), MOST_SHARE)
+    share = min(max(DRAWN_SHARE, least / size), MOST_SHARE) if least else min(DRAWN_SHARE, DRAWN_MM / size)
     while True:
         found = body.simplify(share * size).to_mesh64()
         if len(found.tri_verts) <= DRAWN_TRIANGLES or share >= MOST_SHARE:

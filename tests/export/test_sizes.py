@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import manifold3d
 import pytest
 
 from articad.agents.pipeline import replay
 from articad.assembly import Assembly
 from articad.entry import read
 from articad.export.gltf import write_glb
+from articad.export.meshes import drawn
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
+from articad.geometry.inscribed.surface import manifold_of, mesh_of
+from articad.kernels.cache import BuildCache
 from articad.report import report_page
 from articad.runs.record import assembly_of
 from articad.runs.run import Run
@@ -40,3 +44,14 @@ def assert_small(assembly: Assembly) -> None:
         assert sum(len(content) for path, content in write(assembly).files.items() if path.endswith((".stl", ".obj"))) < MOST_MESHES
     assert sum(map(len, write_glb(assembly).files.values())) < MOST_MESHES
     assert len(report_page(assembly).encode()) < MOST_REPORT
+
+
+def test_a_pin_in_a_long_bar_shares_no_volume_with_its_bore_where_both_are_drawn() -> None:
+    """Who checks the files measures these meshes: 1/2000 of a long bar is more than the clearance of its bores."""
+    bore = manifold3d.Manifold.cylinder(20, 4.15, 4.15, 128, center=True)
+    bar = manifold3d.Manifold.cube((700, 30, 10), center=True) - bore.translate((330, 0, 0))
+    pin = manifold3d.Manifold.cylinder(20, 4, 4, 128, center=True).translate((330, 0, 0))
+    meshes = [drawn(mesh_of(solid), cache=BuildCache(None)).mesh for solid in (bar, pin)]
+    assert len(meshes[0].triangles) < len(mesh_of(bar).triangles) / 2
+    shared = manifold_of(meshes[0]) ^ manifold_of(meshes[1])
+    assert shared.volume() == 0
