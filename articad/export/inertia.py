@@ -24,7 +24,7 @@ MM_PER_M = 1000.0
 LEAST_MOMENT_KG_M2 = 2e-14  # simulators reject a smaller principal moment: MuJoCo refuses 1e-14
 LEAST_SHARE = 1e-9  # of the sum of second moments, in each direction of a written body: rods and plates have none in theory
 DIGITS = 10  # of the largest moment of inertia: further ones depend on the processor, and would turn the axes of nearly equal moments
-DUST_SHARE = 1e-13  # of the largest moment of inertia: smaller products are rounding noise
+DUST_SHARE = 1e-13  # of a product of inertia: a smaller difference of the two moments is rounding noise
 _JACOBI_SWEEPS = 8  # Jacobi's method converges quadratically: 3 by 3 matrices need at most 5
 LEAST_RADIUS_M = 1e-3  # radius of gyration of a body along a direction in which its inertia gives a negative second moment
 

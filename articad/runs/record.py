@@ -105,10 +105,14 @@ def record_page(run: Run, assembly: Assembly) -> Path:
 def record_certificate(run: Run, certificate: Certificate) -> Report:
     """Save a certificate and its meshes; return its report."""
     report = certificate.to_json()
-    run.save_certificate(report, certificate.mesh_files())
+    _save_certificate(run, certificate, report, certificate.mesh_files())
+    return report
+
+
+def _save_certificate(run: Run, certificate: Certificate, report: Report, meshes: Mapping[str, bytes]) -> None:
+    run.save_certificate(report, meshes)
     for finding in certificate.findings:
         run.trace_finding(finding)
-    return report
 
 
 def record_checked(run: Run, certificate: Certificate) -> list[str]:
@@ -116,14 +120,18 @@ def record_checked(run: Run, certificate: Certificate) -> list[str]:
 
     A refuted certificate is saved with the error `E_CERTIFICATE_REFUTED`.
     """
+    report, meshes = certificate.to_json(), certificate.mesh_files()
     with scratch.folder("certificate") as name:
         folder = Path(name)
-        (folder / "certificate.json").write_text(json.dumps(certificate.to_json()), encoding="utf-8")
+        (folder / "certificate.json").write_text(json.dumps(report), encoding="utf-8")
         (folder / "meshes").mkdir()
-        for file, content in certificate.mesh_files().items():
+        for file, content in meshes.items():
             (folder / "meshes" / file).write_bytes(content)
         faults = verify_file(folder / "certificate.json", folder / "meshes")
-    record_certificate(run, certificate.refuted(faults[0]) if faults and certificate.ok else certificate)
+    if faults and certificate.ok:
+        certificate = certificate.refuted(faults[0])
+        report = certificate.to_json()
+    _save_certificate(run, certificate, report, meshes)
     return faults
 
 
