@@ -282,7 +282,7 @@ def _body(
         "{",
         *_indented(_mass(mass)),
         f"    token[] semantics:labels:class = ['{name}']",
-        f"    double3 xformOp:translate = {_tuple(rounded(T.translation / MM_PER_M))}",
+        f"    double3 xformOp:translate = {_position(T.translation)}",
         f"    quatd xformOp:orient = {_quaternion(T)}",
         '    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
     ]
@@ -312,7 +312,7 @@ def _mass(mass: MassProperties | None) -> list[str]:
     moments, axes = Inertial.from_part(mass, SE3.identity()).possible().without_dust().principal()
     return [
         f"float physics:mass = {number(mass.mass)}",
-        f"point3f physics:centerOfMass = {_tuple(rounded(mass.com / MM_PER_M))}",
+        f"point3f physics:centerOfMass = {_position(mass.com)}",
         f"float3 physics:diagonalInertia = {_tuple(moments)}",
         f"quatf physics:principalAxes = {_quaternion(SE3.from_rotation(axes))}",
     ]
@@ -347,7 +347,7 @@ def _form(shape: Shape, name: str, surface: str | None) -> list[str] | None:
         "{",
         *_indented(fields),
         *_bound(surface, "physics"),
-        f"    double3 xformOp:translate = {_tuple(rounded(T.translation / MM_PER_M))}",
+        f"    double3 xformOp:translate = {_position(T.translation)}",
         f"    quatd xformOp:orient = {_quaternion(T)}",
         f"    uniform token[] xformOpOrder = [{order}]",
         "}",
@@ -555,7 +555,7 @@ def _joint_prim(
         line
         for i, T in enumerate(frames)
         for line in (
-            f"point3f physics:localPos{i} = {_tuple(rounded(T.translation / MM_PER_M))}",
+            f"point3f physics:localPos{i} = {_position(T.translation)}",
             f"quatf physics:localRot{i} = {_quaternion(T)}",
         )
     ]
@@ -577,6 +577,10 @@ def _points(points: FloatArray) -> str:
 
 def _tuple(values: Iterable[float]) -> str:
     return "(" + ", ".join(number(value) for value in values) + ")"
+
+
+def _position(mm: FloatArray) -> str:
+    return _tuple(rounded(mm / MM_PER_M))
 
 
 def _quaternion(T: SE3) -> str:

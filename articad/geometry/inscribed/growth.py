@@ -41,7 +41,7 @@ def grown_planes(facets: Facets, seed: FloatArray, slack: float, size: float) ->
     return np.array(planes)
 
 
-def _least(values: FloatArray) -> FloatArray:
+def _least(values: FloatArray | tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
     """Return the minimum of three rows, `(3, N)` to `(N,)`."""
     return np.asarray(np.minimum(np.minimum(values[0], values[1]), values[2]))
 
@@ -54,7 +54,7 @@ def held_off(planes: FloatArray, facets: Facets) -> FloatArray:
     left = np.arange(facets.count)
     for index, plane in enumerate(planes):
         heights = facets.vertices @ plane[:3]
-        moves = steady(plane[3] - np.minimum(np.minimum(heights[a], heights[b]), heights[c]))
+        moves = steady(plane[3] - _least((heights[a], heights[b], heights[c])))
         better = moves < need[left]
         need[left[better]], which[left[better]] = moves[better], index
         among = moves > 0

@@ -18,9 +18,7 @@ from articad.geometry.shapes import box, sphere
 
 _MOST_CORNERS = 64  # of a piece: the limit of PhysX
 DIGITS = 6  # digits of mm in a piece's corners
-_WEDGE = (
-    1e-6  # squared sine of the smallest angle between planes that form a wedge: normals of one face differ by the rounding of its corners
-)
+_WEDGE = 1e-6  # squared sine of the smallest angle of two planes that form a wedge: normals of one face differ by rounding
 _TIE_MM = 1e-3  # heights above planes of one face differ by less: its corners are rounded
 _FLAT = 1e-5  # a box that is thinner than this share of its length has no certain axes
 
