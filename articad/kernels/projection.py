@@ -18,7 +18,7 @@ from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepLib import BRepLib
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.GCPnts import GCPnts_TangentialDeflection
-from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Line, GeomAbs_Plane
+from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Line, GeomAbs_Plane, GeomAbs_Sphere
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
@@ -63,8 +63,11 @@ def projected(shape: TopoDS_Shape, view: Json) -> Json:
 
 
 def features(shape: TopoDS_Shape) -> Json:
-    """Return what dimensions measure: straight edges `[x0, y0, z0, x1, y1, z1]`, and circles and arcs `[x, y, z, axis (3), radius, angle]` [mm, rad]."""
-    straight, circles = [], []
+    """Return what dimensions measure [mm, rad].
+
+    Straight edges are `[x0, y0, z0, x1, y1, z1]`, circles and arcs `[x, y, z, axis (3), radius, angle]`, spherical faces `[x, y, z, radius]`.
+    """
+    straight, circles, spheres = [], [], []
     for item in found(shape, TopAbs_EDGE):
         edge = TopoDS.Edge(item)
         if BRep_Tool.Degenerated_s(edge):
@@ -88,7 +91,12 @@ def features(shape: TopoDS_Shape) -> Json:
                     curve.LastParameter() - curve.FirstParameter(),
                 ]
             )
-    return {"straight": straight, "circles": circles}
+    for face in found(shape, TopAbs_FACE):
+        surface = BRepAdaptor_Surface(TopoDS.Face(face))
+        if surface.GetType() == GeomAbs_Sphere:
+            sphere = surface.Sphere()
+            spheres.append([sphere.Location().X(), sphere.Location().Y(), sphere.Location().Z(), sphere.Radius()])
+    return {"straight": straight, "circles": circles, "spheres": spheres}
 
 
 def _size(shape: TopoDS_Shape) -> float:

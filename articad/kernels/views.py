@@ -96,10 +96,12 @@ class Features:
     Attributes:
         straight: Ends of straight edges, `(N, 2, 3)` [mm].
         circles: Centre, axis, radius and angle of circular edges, `(N, 8)` [mm, rad].
+        spheres: Centre and radius of spherical faces, `(N, 4)` [mm].
     """
 
     straight: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 3)))
     circles: FloatArray = field(default_factory=lambda: np.zeros((0, 8)))
+    spheres: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
 
 
 class ViewKernel(Build123dKernel):
@@ -156,7 +158,9 @@ def _line(row: list[Any]) -> Line:
 
 
 def _features(row: Json) -> Features:
-    return Features(_numbers(row["straight"]).reshape(-1, 2, 3), _numbers(row["circles"]).reshape(-1, 8))
+    return Features(
+        *(_numbers(row[kind]).reshape(shape) for kind, shape in (("straight", (-1, 2, 3)), ("circles", (-1, 8)), ("spheres", (-1, 4))))
+    )
 
 
 def _numbers(value: Any) -> FloatArray:

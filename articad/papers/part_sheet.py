@@ -313,6 +313,7 @@ def _hole_names(facts: PartFacts) -> dict[str, Hole]:
 
 
 _LOOSE: Final = 2e-3  # mm: radii of holes are measured on meshes
+_NEAR_POLE: Final = 1e-3  # share of a sphere's radius within which points count as at its pole: outlines are drawn by polylines
 
 
 # ---------------------------------------------------------------------- dimensions
@@ -328,7 +329,7 @@ def _planned(facts: PartFacts) -> list[tuple[str, str, list[Any], float, str]]:
     for axis, view, kind in ((0, "front", "DistanceX"), (2, "front", "DistanceY"), (1, "top", "DistanceY")):
         key = _turned(facts, axis, float(size[axis]))
         if key is not None and key in turned:
-            continue  # the diameter of a body of revolution is told once
+            continue  # the diameter of a body of revolution, or of a ball, is told once
         if key is not None:
             turned.add(key)
             widths[view, kind] = float(size[axis])
@@ -375,14 +376,32 @@ def _is_whole(facts: PartFacts, circle: FloatArray) -> bool:
 
 
 def _turned(facts: PartFacts, axis: int, size: float) -> tuple[Any, ...] | None:
-    """Return what identifies the circle that makes the overall size along an axis; None if it is none."""
+    """Return what identifies the circle or the sphere that makes the overall size along an axis, its sign of ISO 129-1 first; None if it is none."""
     middle = 0.5 * (facts.box[0] + facts.box[1])
     for row in facts.features.circles:
         if abs(2 * row[6] - size) < 1e-4 and abs(row[3 + axis]) < SAME and abs(row[axis] - middle[axis]) < 1e-4:
             along = int(np.abs(row[3:6]).argmax())
             if abs(abs(row[3 + along]) - 1.0) < SAME and _is_whole(facts, row):
-                return along, round(float(row[6]), 4)
+                return "Ø", along, round(float(row[6]), 4)
+    for x, y, z, radius in facts.features.spheres:
+        centre = np.array([x, y, z])
+        if abs(2 * radius - size) < 1e-4 and abs(centre[axis] - middle[axis]) < 1e-4 and _is_at_poles(facts, axis, centre, radius):
+            return "SØ", round(float(radius), 4)
     return None
+
+
+def _is_at_poles(facts: PartFacts, axis: int, centre: FloatArray, radius: float) -> bool:
+    """Return whether a part reaches its bounds along an axis at the poles of a sphere only.
+
+    What lies within d of a bound lies within sqrt(2 R d) of the pole, as on every sphere of radius R.
+    """
+    shown = FRONT if axis != 1 else TOP
+    right, up = np.array(shown.right), np.array(shown.up)
+    across = 0 if abs(right[axis]) > 0.5 else 1
+    points = np.concatenate([sampled(line) for line in facts.views[shown.name].visible])
+    near = np.abs(points[:, across, None] - facts.box[:, axis]).min(axis=1) < _NEAR_POLE * radius
+    aside = points[near, 1 - across] - (centre @ right, centre @ up)[1 - across]
+    return bool(near.any() and (np.abs(aside) < 1.01 * np.sqrt(2 * _NEAR_POLE) * radius).all())
 
 
 def _ends(facts: PartFacts, axis: int, view: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -561,8 +580,8 @@ def _draw_dimensions(sheet: DrawingSheet, facts: PartFacts, views: Mapping[str, 
         start, end = (placed.at(np.array(point)) for point in points)
         vertical = kind == "DistanceY"
         axis = {"DistanceX": 0, "DistanceY": 2 if view == "front" else 1}[kind]
-        round_one = len(elements) == 2 and _turned(facts, axis, value) is not None
-        words = f"{'Ø' if round_one else ''}{_number(value if name else round(value, _MEASURED))}"
+        round_one = _turned(facts, axis, value) if len(elements) == 2 else None
+        words = f"{round_one[0] if round_one else ''}{_number(value if name else round(value, _MEASURED))}"
         a, b = sorted((start[1], end[1]) if vertical else (start[0], end[0]))
         short = b - a < text_width(words, SMALL) + 2.0 or b - a < 2.5 * ARROW
         wide = text_width(words, SMALL)

@@ -187,6 +187,46 @@ def build(part):
     }
 
 
+BALL = """
+from build123d import Cylinder, Pos, Rot, Sphere
+def build(part):
+    d = part.dimensions
+    ball = Sphere(d["ball_radius"])
+    if d["stem"]:
+        ball += Pos(0, 0, -d["ball_radius"]) * Cylinder(6, d["stem"])
+    return Rot(X=d["turned_deg"]) * ball, {"bore": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
+"""
+
+
+@pytest.mark.parametrize(("stem", "turned"), [(0, 0), (0, 35), (40, 0), (40, 90)])
+def test_spheres_are_told_by_their_diameter_and_an_s_once(stem: float, turned: float) -> None:
+    """ISO 129-1: the letter S stands before the diameter of a sphere."""
+    part = PLAN["parts"][0] | {"dimensions": {"ball_radius": 24, "stem": stem, "turned_deg": turned}}
+    plan = PLAN | {"parts": [part], "joints": [], "freedoms": 0}
+    assembly = Assembly.from_plan(AssemblyPlan.from_json(plan), {"plate": BALL}, cache=BuildCache(Path(tempfile.mkdtemp())))
+    told: Any = next(one.told for one in drawings_of(assembly) if one.part == "plate")
+    rows = [(row["text"], row["name"]) for row in told["dimensions"]]
+    assert rows.count(("SØ48", "ball_radius")) == 1
+    assert [text for text, _ in rows if text in ("48", "Ø48", "R24")] == []
+    assert any(text.startswith("6") for text, _ in rows) == bool(stem)  # the height: 68 mm less what the ball hides
+
+
+def test_the_ends_of_a_dome_are_not_those_of_a_sphere() -> None:
+    """Half a ball on a box of its width: the width is the box's, and the ball is told by its radius."""
+    script = """
+from build123d import Align, Box, Cylinder, Sphere
+def build(part):
+    d = part.dimensions
+    dome = Sphere(d["dome_radius"]) - Box(100, 100, 100, align=(Align.CENTER, Align.CENTER, Align.MAX))
+    return dome + Box(48, 48, 10, align=(Align.CENTER, Align.CENTER, Align.MAX)), {"bore": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
+"""
+    part = PLAN["parts"][0] | {"dimensions": {"dome_radius": 24}}
+    plan = PLAN | {"parts": [part], "joints": [], "freedoms": 0}
+    assembly = Assembly.from_plan(AssemblyPlan.from_json(plan), {"plate": script}, cache=BuildCache(Path(tempfile.mkdtemp())))
+    told: Any = next(one.told for one in drawings_of(assembly) if one.part == "plate")
+    assert not [row for row in told["dimensions"] if row["text"].startswith("SØ")]
+
+
 def test_the_table_of_holes_has_the_holes_of_the_script() -> None:
     told: Any = sheet("plate").told
     bore, *small = told["holes"]
