@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any, Final
 
 import numpy as np
@@ -159,60 +160,62 @@ class _Layout:
 def _layout(facts: PartFacts, paper: tuple[float, float], *, tables: bool = True) -> _Layout | None:
     """Return the places of views and tables at the largest scale at which they fit on a paper; None if they fit at none."""
     wanted = list(_tables(facts)) if tables else []
-    planned = _planned(facts)
-    rows = {
-        (view, side): sum(1 for one in planned if one[0] == view and one[1] == side)
-        for view in ("front", "top", "left")
-        for side in ("DistanceX", "DistanceY")
-    }
-    width, depth, height = (float(value) for value in facts.box[1] - facts.box[0])
+    # the section stands to the right of the left view, or below it if only that fits
+    places = product(SCALES, (False,) if facts.section is None else (False, True))
+    return next((layout for scale, below in places if (layout := _layout_at(facts, paper, wanted, scale, below=below)) is not None), None)
+
+
+def _layout_at(facts: PartFacts, paper: tuple[float, float], wanted: Sequence[Any], scale: float, *, below: bool) -> _Layout | None:
+    """Return the places of views and tables at a scale; None if they do not fit."""
+    planned = [(view, kind) for view, kind, *_ in _planned(facts)]
+    w, d, h = (scale * float(value) for value in facts.box[1] - facts.box[0])
     left, bottom, right, top = FILING + 4.0, EDGE + 4.0, paper[0] - EDGE - 4.0, paper[1] - EDGE - 13.0
-    for scale in SCALES:
-        w, d, h = width * scale, depth * scale, height * scale
-        x_front = left + _FIRST + _STEP * max(rows["front", "DistanceY"], rows["top", "DistanceY"]) + 4.0
-        y_front = top - h
-        leaders = 26.0  # for texts beside circles
-        x_left = x_front + w + leaders
-        y_top = y_front - (_FIRST + _STEP * rows["front", "DistanceX"] + 10.0) - d
-        x_section = x_left + d + _GAP + 12.0
-        s = 0.0 if facts.section is None else (w if facts.section.right == FRONT.right else d)
-        far = x_section + s if s else x_left + d
-        floor = bottom + BLOCK[1] + 4.0 if x_front + w + leaders > paper[0] - EDGE - BLOCK[0] - 4.0 else bottom
-        if far > right or y_top < floor + 2.0:
-            continue
-        # what is left for tables and the isometric view: to the right of the top view, and above the title block
-        x_free, y_free = x_front + w + leaders, EDGE + BLOCK[1] + 5.0
-        ceiling = y_front - 14.0
-        seated = _seated(wanted, x_free, y_free, right, ceiling)
-        if seated is None:
-            seated = _seated(wanted, x_free, y_free, right, ceiling, apart=True)
-        if seated is None:  # to the right of all views, up to the top
-            seated = _seated(wanted, far + leaders - _LEAST_ISO, y_free, right, top)
-        if seated is None:
-            continue
-        placed_tables, x_iso = seated
-        low, high = _flat_box(facts, ISO)
-        span = high - low
-        rooms = ((x_free, y_free, x_iso - 6.0, ceiling), (left, y_free, x_iso - 6.0, y_top - 16.0))  # beside the top view, and below it
-        best = _roomiest(span, scale, rooms)
-        views = {
-            view.name: _Placed(view, _origin(facts, view, corner, scale), scale, *_flat_box(facts, view))
-            for view, corner in ((FRONT, (x_front, y_front)), (TOP, (x_front, y_top)), (LEFT, (x_left, y_front)))
-        }
-        if facts.section is not None:
-            views["section"] = _Placed(
-                facts.section, _origin(facts, facts.section, (x_section, y_front), scale), scale, *_flat_box(facts, facts.section)
-            )
-        if best is None and scale > SCALES[-3]:
-            continue
-        if best is not None:
-            small, (x0, y0, x1, y1) = best
-            middle = 0.5 * (low + high)
-            views["iso"] = _Placed(
-                ISO, (0.5 * (x0 + x1) - small * float(middle[0]), 0.5 * (y0 + y1) - small * float(middle[1])), small, low, high
-            )
-        return _Layout(paper, scale, views, placed_tables)
-    return None
+    beside_block = paper[0] - EDGE - BLOCK[0] - 4.0  # where the title block begins
+    leaders = 26.0  # for texts beside circles
+    x_front = left + _FIRST + _STEP * max(planned.count((view, "DistanceY")) for view in ("front", "top")) + 4.0
+    y_front = top - h
+    x_left = x_front + w + leaders
+    y_top = y_front - (_FIRST + _STEP * planned.count(("front", "DistanceX")) + 10.0) - d
+    s = 0.0 if facts.section is None else (w if facts.section.right == FRONT.right else d)
+    x_section, y_section = (x_left, y_top + d - h) if below else (x_left + d + _GAP + 12.0, y_front)
+    far = max(x_section + s, x_left + d) if s else x_left + d
+    floor = bottom + BLOCK[1] + 4.0 if x_left > beside_block else bottom
+    if far > right or min(y_top, y_section) < floor + 2.0:
+        return None
+    # what is left for tables and the isometric view: to the right of the top view, and above the title block
+    y_free, ceiling = EDGE + BLOCK[1] + 5.0, (y_section if below else y_front) - 14.0
+    corners = [(x_left, ceiling), (far + leaders - _LEAST_ISO, top)]  # there, or to the right of all views, up to the top
+    if below:
+        corners.insert(1, (x_left - _LEAST_ISO, ceiling))  # below the section, with the isometric view elsewhere
+    tries = [(x, y, apart) for x, y in corners for apart in ((False, True) if x == x_left else (False,))]
+    seated = next((found for x, y, apart in tries if (found := _seated(wanted, x, y_free, right, y, apart=apart)) is not None), None)
+    if seated is None:
+        return None
+    placed_tables, x_iso = seated
+    low, high = _flat_box(facts, ISO)
+    rooms = (  # beside the top view; below it, above the title block or beside that
+        (x_left, y_free, x_iso - 6.0, ceiling),
+        (left, y_free, x_iso - 6.0, y_top - 16.0),
+        (left, bottom, min(x_iso - 6.0, beside_block), y_top - 16.0),
+    )
+    best = _roomiest(high - low, scale, rooms)
+    if best is None and scale > SCALES[-3]:
+        return None
+    views = {
+        view.name: _Placed(view, _origin(facts, view, corner, scale), scale, *_flat_box(facts, view))
+        for view, corner in ((FRONT, (x_front, y_front)), (TOP, (x_front, y_top)), (LEFT, (x_left, y_front)))
+    }
+    if facts.section is not None:
+        views["section"] = _Placed(
+            facts.section, _origin(facts, facts.section, (x_section, y_section), scale), scale, *_flat_box(facts, facts.section)
+        )
+    if best is not None:
+        small, (x0, y0, x1, y1) = best
+        middle = 0.5 * (low + high)
+        views["iso"] = _Placed(
+            ISO, (0.5 * (x0 + x1) - small * float(middle[0]), 0.5 * (y0 + y1) - small * float(middle[1])), small, low, high
+        )
+    return _Layout(paper, scale, views, placed_tables)
 
 
 def _roomiest(
@@ -369,10 +372,12 @@ def _by_diameter(facts: PartFacts, row: tuple[str, str, list[Any], float, str]) 
 
 
 def _is_whole(facts: PartFacts, circle: FloatArray) -> bool:
-    """Return whether the arcs of a part with a circle's centre and radius go all around."""
+    """Return whether the arcs of a part with a circle's radius go all around its axis, at one place along it."""
     every = facts.features.circles
-    same = (np.linalg.norm(every[:, :3] - circle[:3], axis=1) < 1e-4) & (np.abs(every[:, 6] - circle[6]) < 1e-4)
-    return bool(every[same, 7].sum() > 2 * np.pi - SAME)
+    apart = every[:, :3] - circle[:3]
+    along = apart @ circle[3:6]
+    coaxial = (np.linalg.norm(apart - along[:, None] * circle[3:6], axis=1) < 1e-4) & (np.abs(every[:, 6] - circle[6]) < 1e-4)
+    return any(every[coaxial & (np.abs(along - at) < 1e-4), 7].sum() > 2 * np.pi - SAME for at in along[coaxial])
 
 
 def _turned(facts: PartFacts, axis: int, size: float) -> tuple[Any, ...] | None:
