@@ -141,14 +141,23 @@ def test_a_child_works_in_an_empty_folder_of_its_own_that_is_removed() -> None:
 def test_a_child_gets_no_key_and_no_setting_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("OPENAI_API_KEY", "AWS_SECRET_ACCESS_KEY", "SOME_TOKEN", "PYTHONPATH", "HTTPS_PROXY", "OPENAI_BASE_URL"):
         monkeypatch.setenv(name, "secret")
-    monkeypatch.setenv("ARTICAD_CACHE", "kept")
+    monkeypatch.setenv("ARTICAD_CACHE", "/kept")
     for given in (None, launcher.environment(), launcher.environment(*launcher.OWN)):
         seen = json.loads(in_child("import json, os; print(json.dumps(dict(os.environ)))", environment=given).out)
         assert "secret" not in seen.values()
-    assert seen["ARTICAD_CACHE"] == "kept"
+    assert seen["ARTICAD_CACHE"] == "/kept"
     assert in_child("import os; print(dict(os.environ))", environment={"ONE": "1"}).out.split()[:2] == [b"{'ONE':", b"'1',"]
     assert launcher.environment_with_keys()["OPENAI_API_KEY"] == "secret"
     assert "PYTHONPATH" not in launcher.environment_with_keys()
+
+
+@pytest.mark.parametrize("name", ["ARTICAD_CACHE", "ARTICAD_FREECAD", "ARTICAD_MEMORY", "ARTICAD_ROOT"])
+def test_a_path_means_the_same_to_a_child(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A child works in another folder, which is removed afterwards."""
+    monkeypatch.chdir(tmp_path)
+    for value, meant in (("kept", str(tmp_path / "kept")), ("/kept", "/kept"), ("", "")):
+        monkeypatch.setenv(name, value)
+        assert launcher.environment(*launcher.OWN)[name] == launcher.environment_with_keys()[name] == meant
 
 
 SEARCHED = ("PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "OMP_TOOL_LIBRARIES", "LIBGL_DRIVERS_PATH", "__EGL_VENDOR_LIBRARY_DIRS")

@@ -36,6 +36,8 @@ TO_STDOUT: Final = subprocess.STDOUT
 OUTPUT: Final = 64 * 2**20  # bytes of a child's output that are kept, the last ones
 OWN: Final = ("HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME", "CONDA_PREFIX", "ARTICAD_")
 """Variables that articad's own commands need to find caches, memories and FreeCAD."""
+_PATHS: Final = ("ARTICAD_CACHE", "ARTICAD_FREECAD", "ARTICAD_MEMORY", "ARTICAD_ROOT")
+"""Those that may be relative to the working folder, which a child does not share."""
 SCREEN: Final = (
     "DISPLAY",
     "WAYLAND_DISPLAY",
@@ -306,19 +308,19 @@ def run(
 
 
 def environment(*more: str) -> dict[str, str]:
-    """Return the variables of this process that a child needs: language, libraries, threads, and the named ones.
+    """Return the variables of this process that a child needs: language, libraries, threads, and the named ones; paths are absolute.
 
     Args:
         more: Further variables; a name that ends with `_` stands for all that begin with it.
     """
     names = (*_BASIC, *more)
     prefixes = tuple(name for name in names if name.endswith("_"))
-    return _without_working_folder({name: value for name, value in os.environ.items() if name in names or name.startswith(prefixes)})
+    return _for_child({name: value for name, value in os.environ.items() if name in names or name.startswith(prefixes)})
 
 
 def environment_with_keys() -> dict[str, str]:
     """Return all variables of this process except Python's own, for a child that calls a model: providers choose the names of keys."""
-    return _without_working_folder({name: value for name, value in os.environ.items() if not name.startswith("PYTHON")})
+    return _for_child({name: value for name, value in os.environ.items() if not name.startswith("PYTHON")})
 
 
 @contextlib.contextmanager
@@ -355,6 +357,12 @@ def _variables(given: Mapping[str, str] | None, private: str | None, is_ours: bo
     if is_ours:
         variables |= {_SAFE_PATH: "1", "MUJOCO_GL": "disable"}  # for processes that its libraries start; MuJoCo draws nothing here
     return variables
+
+
+def _for_child(variables: Mapping[str, str]) -> dict[str, str]:
+    """Return variables that mean the same in the working folder of a child."""
+    absolute = {name: os.path.abspath(variables[name]) for name in _PATHS if variables.get(name)}  # noqa: PTH100 - texts, as they are
+    return _without_working_folder({**variables, **absolute})
 
 
 def _without_working_folder(variables: Mapping[str, str]) -> dict[str, str]:
