@@ -78,10 +78,11 @@ def print_complete(report: Report, terminal: Terminal, *, stood: Sequence[str] =
         places = f"{run / 'checks.json'} and {run / 'export'}/*/losses.json"
         terminal.say(f"  … and {more} more ({places}): {_counts(finding['code'] for group in groups for finding in group)}")
     if "verification" in report:
-        faults = report["verification"]["faults"]
-        terminal.say(
-            f"Certificate: {run / 'certificate.json'}, {f'refuted by its checker: {faults[0]}' if faults else 'accepted by its checker'}."
+        verified = report["verification"]
+        said = (
+            "accepted by its checker" if verified["ok"] else "refuted by its checker" if verified["checked"] else "not read by its checker"
         )
+        terminal.say(f"Certificate: {run / 'certificate.json'}, {': '.join([said, *verified['faults'][:1]])}.")
     files = [str(Path(export["main"]).relative_to(run)) for export in report["exports"].values()]
     held = f" ({' and '.join(stood)}: loaded and held at rest in MuJoCo)" if stood else ""
     terminal.say(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,10 +12,10 @@ from articad import formats
 from articad.aliases import Progress
 from articad.assembly import Assembly
 from articad.certificates.certificate import Certificate
-from articad.certificates.verifier import verify_file
+from articad.certificates.verifier import BYTES, verify_file
 from articad.connectors.connector import Connector
 from articad.errors import ReadError
-from articad.findings import Findings
+from articad.findings import Finding, Findings
 from articad.geometry.mesh_files import write_stl
 from articad.geometry.part import Solid
 from articad.interference.check import Checks
@@ -115,24 +116,43 @@ def _save_certificate(run: Run, certificate: Certificate, report: Report, meshes
         run.trace_finding(finding)
 
 
-def record_checked(run: Run, certificate: Certificate) -> list[str]:
-    """Have the independent checker read the files of a certificate, then save it; return why it is refuted, nothing if it is accepted.
+def record_checked(run: Run, certificate: Certificate) -> Report:
+    """Have the independent checker read the files of a certificate, then save it; return whether it is accepted, and why not.
 
-    A refuted certificate is saved with the error `E_CERTIFICATE_REFUTED`.
+    A refuted certificate is saved with the error `E_CERTIFICATE_REFUTED`, one with a file that the checker does not read with `E_NOT_CHECKED`.
+
+    Returns:
+        `ok`; `checked`, whether the checker reads files of this size; `faults`, why it is not accepted.
     """
     report, meshes = certificate.to_json(), certificate.mesh_files()
+    text = json.dumps(report).encode()
+    size, name = max((len(content), name) for name, content in {"certificate.json": text, **meshes}.items())
+    is_read = size <= BYTES
+    faults = _faults(text, meshes) if is_read else [f"{name} has {size} bytes, more than the {BYTES} that it reads"]
+    if faults and certificate.ok:
+        certificate = certificate.refuted(faults[0]) if is_read else _unread(certificate, faults[0])
+        report = certificate.to_json()
+    _save_certificate(run, certificate, report, meshes)
+    return {"ok": not faults, "checked": is_read, "faults": faults}
+
+
+def _unread(certificate: Certificate, reason: str) -> Certificate:
+    """Return a certificate with the error that its checker does not read it."""
+    message = f"The certificate checker does not read the proof: {reason}."
+    hint = "Prove some joints at a time: `articad certify RUN --joints A,B`; or each joint alone: `articad certify RUN --no-pairs`."
+    finding = Finding(code="E_NOT_CHECKED", where="certificate", message=message, hint=hint)
+    return replace(certificate, findings=Findings([*certificate.findings, finding]))
+
+
+def _faults(certificate: bytes, meshes: Mapping[str, bytes]) -> list[str]:
+    """Return why the independent checker refutes the files of a certificate."""
     with scratch.folder("certificate") as name:
         folder = Path(name)
-        (folder / "certificate.json").write_text(json.dumps(report), encoding="utf-8")
+        (folder / "certificate.json").write_bytes(certificate)
         (folder / "meshes").mkdir()
         for file, content in meshes.items():
             (folder / "meshes" / file).write_bytes(content)
-        faults = verify_file(folder / "certificate.json", folder / "meshes")
-    if faults and certificate.ok:
-        certificate = certificate.refuted(faults[0])
-        report = certificate.to_json()
-    _save_certificate(run, certificate, report, meshes)
-    return faults
+        return verify_file(folder / "certificate.json", folder / "meshes")
 
 
 def _hurried(run: Run) -> list[Report]:
