@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
+import signal
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +16,7 @@ import pytest
 from articad import cli, read
 from articad.assembly import Assembly
 from articad.certificates.certificate import Certificate
+from articad.kernels.freecad_install import FreeCADLimits
 from articad.kernels.kernel import BuildCache
 from articad.processes import launcher
 from articad.runs import exporting
@@ -46,10 +51,22 @@ def files_of(run: Run) -> dict[str, bytes]:
     return {str(file.relative_to(run.path)): file.read_bytes() for file in sorted((run.path / "export").rglob("*")) if file.is_file()}
 
 
-def test_what_the_process_writes_is_what_is_written_without_it(run: Run, chest: Assembly) -> None:
-    with pytest.MonkeyPatch.context() as patch, Exports(run, chest, NAMES, beside=True, cache=BuildCache()) as exports:
+def notes_of(run: Run) -> list[str]:
+    """Return what the trace says of the process."""
+    return [event["message"] for event in run.events() if event["event"] == "note" and event["where"] == "export"]
+
+
+def test_what_the_process_writes_is_what_is_written_without_it(
+    run: Run, chest: Assembly, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parts = BuildCache()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ARTICAD_CACHE", "kept")  # of shapes that the exports make
+    with pytest.MonkeyPatch.context() as patch, Exports(run, chest, NAMES, beside=True, cache=parts) as exports:
         patch.setattr(exporting, "record_export", lambda *_: pytest.fail("written here"))
         reports = [exports.record(name) for name in NAMES]
+    assert list((tmp_path / "kept").glob("*/seal.json")), "in the working folder of this process"
+    assert notes_of(run) == []
     beside = files_of(run)
     assert [report["main"] for report in reports] == [record_export(run, chest, name)["main"] for name in NAMES]
     assert files_of(run) == beside
@@ -69,6 +86,48 @@ def test_what_a_killed_process_did_not_write_is_written_here(at: int, run: Run, 
     assert files_of(run) == alone
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="Windows stops no process")
+def test_a_process_that_does_not_go_on_is_ended(run: Run, chest: Assembly, monkeypatch: pytest.MonkeyPatch) -> None:
+    record_export(run, chest, "plan")
+    alone = files_of(run)
+    monkeypatch.setattr(exporting, "_SECONDS", 0.2)
+    with Exports(run, chest, ["plan"], beside=True, cache=BuildCache()) as exports:
+        process = exports._process
+        assert process is not None
+        os.kill(process.pid, signal.SIGSTOP)
+        exports.record("plan")
+        assert process.ended()
+    assert files_of(run) == alone
+    assert notes_of(run) == ["the process that writes exports was ended, because plan took longer than 0.2 s: it said nothing"]
+
+
+def test_exports_are_written_here_where_no_process_starts(run: Run, chest: Assembly, monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[launcher.Limits] = []
+
+    def refuse(*_: object, limits: launcher.Limits, **__: object) -> None:
+        given.append(limits)
+        raise BlockingIOError(errno.EAGAIN, "no more processes")
+
+    monkeypatch.setattr(launcher, "start", refuse)
+    with Exports(run, chest, ["plan"], beside=True, cache=BuildCache()) as exports:
+        assert exports.record("plan")["ok"]
+    assert notes_of(run) == [f"the process that writes exports did not start: [Errno {errno.EAGAIN}] no more processes"]
+    (limits,) = given
+    least = FreeCADLimits()  # FreeCAD inherits the limits: it refuses to start where they are less than its own
+    assert limits.resources()["CPU"] > least.seconds
+    assert limits.resources()["DATA"] >= least.memory
+    assert limits.resources()["FSIZE"] >= least.file_size
+
+
+def test_what_the_process_says_is_kept_in_the_trace(run: Run, chest: Assembly, monkeypatch: pytest.MonkeyPatch) -> None:
+    start = launcher.start
+    code = r"import os; os.write(1, b'a library says \xff\n'); os.write(2, b'the crash\n'); os._exit(3)"
+    monkeypatch.setattr(launcher, "start", lambda _, **more: start([sys.executable, "-c", code], **more | {"module": None}))
+    with Exports(run, chest, ["plan"], beside=True, cache=BuildCache()) as exports:
+        assert exports.record("plan")["ok"]
+    assert notes_of(run) == ["the process that writes exports ended before plan, with exit code 3: a library says \ufffd\nthe crash"]
+
+
 def test_a_process_is_started_only_where_it_pays(run: Run, chest: Assembly, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(launcher, "start", lambda *_, **__: pytest.fail("started"))
     with Exports(run, chest, NAMES, beside=False, cache=BuildCache()) as exports:
@@ -77,7 +136,7 @@ def test_a_process_is_started_only_where_it_pays(run: Run, chest: Assembly, monk
 
 def test_a_refuted_certificate_is_saved_as_refuted(run: Run, chest: Assembly) -> None:
     certificate = chest.certify(check=False)
-    assert record_checked(run, certificate) == []
+    assert record_checked(run, certificate) == {"ok": True, "checked": True, "faults": []}
     assert json.loads((run.path / "certificate.json").read_bytes())["ok"]
 
     class Forged(Certificate):
@@ -88,11 +147,25 @@ def test_a_refuted_certificate_is_saved_as_refuted(run: Run, chest: Assembly) ->
             return files | {"lid.npz": files["box.npz"]}
 
     fields: dict[str, Any] = {name: getattr(certificate, name) for name in certificate.__dataclass_fields__}
-    faults = record_checked(run, Forged(**fields))
-    assert faults == ["mesh of lid is missing or different"]
+    verified = record_checked(run, Forged(**fields))
+    assert verified == {"ok": False, "checked": True, "faults": ["mesh of lid is missing or different"]}
     saved = json.loads((run.path / "certificate.json").read_bytes())
     assert not saved["ok"]
     assert [finding["code"] for finding in saved["findings"] if finding["severity"] == "error"] == ["E_CERTIFICATE_REFUTED"]
+
+
+def test_a_proof_too_large_for_the_checker_is_not_called_refuted(run: Run, chest: Assembly, monkeypatch: pytest.MonkeyPatch) -> None:
+    certificate = chest.certify(check=False)
+    size = len(certificate.mesh_files()["_proof.npz"])
+    monkeypatch.setattr("articad.runs.record.BYTES", size - 1)
+    verified = record_checked(run, certificate)
+    reason = f"_proof.npz has {size} bytes, more than the {size - 1} that it reads"
+    assert verified == {"ok": False, "checked": False, "faults": [reason]}
+    saved = json.loads((run.path / "certificate.json").read_bytes())
+    assert not saved["ok"]
+    (finding,) = [finding for finding in saved["findings"] if finding["severity"] == "error"]
+    assert (finding["code"], finding["message"]) == ("E_NOT_CHECKED", f"The certificate checker does not read the proof: {reason}.")
+    assert "articad certify RUN --joints" in finding["hint"]
 
 
 def test_a_complete_build_says_that_a_refuted_proof_is_refuted(
