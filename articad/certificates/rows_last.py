@@ -2,7 +2,7 @@
 
 Each function here makes products and sums in the order in which NumPy makes them over a last axis of three, so its results are those of
 `np.cross`, `np.linalg.norm` and `ufunc.reduce` to the last bit. `np.einsum` may sum in another order: a length from its
-sum of squares differs in the last bit, and `Spread.second_order` with such lengths by about 1e-14 mm.
+sum of squares may differ in the last bit, and so may what `Spread.second_order` computes from lengths: by 2e-15 mm in bounds of 9 mm.
 """
 
 from __future__ import annotations
