@@ -16,7 +16,7 @@ from articad.errors import KinematicsError
 from articad.export.bundle import Bundle
 from articad.export.features import motion_and_mass
 from articad.export.losses import kept_losses, losses_of, refuse
-from articad.export.markup import tidy
+from articad.export.markup import rounded, rounded_quaternion
 from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
 from articad.export.product import of_the_product
@@ -290,4 +290,4 @@ def _continuous(quaternions: FloatArray) -> FloatArray:
 
 
 def _placement(T: SE3) -> dict[str, list[float]]:
-    return {"translation": tidy(T.translation / MM_PER_M), "rotation": tidy(T.quaternion)}
+    return {"translation": rounded(T.translation / MM_PER_M), "rotation": rounded_quaternion(T)}

@@ -22,7 +22,7 @@ CARRIER_INERTIA_KG_M2 = 1e-7  # of a ball of 50 mm radius and the carrier's mass
 CARRIER_SHARE = 0.05  # largest share of the body's pseudo-inertia that carriers take in any direction, so that it stays physical
 MM_PER_M = 1000.0
 LEAST_MOMENT_KG_M2 = 2e-14  # simulators reject a smaller principal moment: MuJoCo refuses 1e-14
-LEAST_SHARE = 1e-9  # of the sum of second moments, in each direction of a written body: rods and plates have none in theory
+LEAST_SHARE = 4e-9  # of the sum of second moments, in each direction of a written body: rods and plates have none in theory
 DIGITS = 10  # of the largest moment of inertia: further ones depend on the processor, and would turn the axes of nearly equal moments
 DUST_SHARE = 1e-13  # of a product of inertia: a smaller difference of the two moments is rounding noise
 _JACOBI_SWEEPS = 8  # Jacobi's method converges quadratically: 3 by 3 matrices need at most 5
@@ -68,12 +68,14 @@ class Inertial:
         """Return this body, thickened if it is a rod or a plate, so that rounding cannot violate A + B >= C.
 
         The second moment in a direction is half of A + B − C; readers compute the principal moments A, B, C from the printed numbers
-        with `DIGITS` digits, and MuJoCo refuses A + B < C. Second moments below half of `LEAST_SHARE` of their sum are raised to
-        `LEAST_SHARE`, which changes no principal moment by more than 2e-9 of the largest.
+        with `DIGITS` digits, and MuJoCo refuses A + B < C. Rounding changes each entry by 0.5e-9 of the largest at most, so A, B, C by
+        1.5e-9 (the Frobenius norm of nine such changes) and A + B − C by 4.5e-9 of it. The sum of second moments is at least the largest
+        entry, so A + B − C is 8e-9 of that after second moments below `LEAST_SHARE` of their sum are raised to it. No principal moment
+        changes by more than 8e-9 of the largest.
         """
         moments, axes = np.linalg.eigh(np.trace(self.inertia) / 2 * np.eye(3) - self.inertia)
         least = max(LEAST_SHARE * float(moments.sum()), LEAST_MOMENT_KG_M2)
-        if moments[0] >= least / 2:
+        if moments[0] >= least:
             return self
         about_com = (axes * np.maximum(moments, least)) @ axes.T
         inertia = np.trace(about_com) * np.eye(3) - about_com
@@ -150,7 +152,7 @@ class Inertial:
         one = Inertial(whole.mass, np.zeros(3) if origin is None else np.asarray(origin, dtype=np.float64), whole.inertia).pseudo
         whitened = np.linalg.inv(np.linalg.cholesky(_positive(self.pseudo)))
         largest = float(np.linalg.eigvalsh(whitened @ (count * one) @ whitened.T)[-1])
-        scale = min(1.0, CARRIER_SHARE / largest)
+        scale = min(1.0, float(f"{CARRIER_SHARE / largest:.9g}"))  # further digits depend on the processor
         return Inertial.from_pseudo(self.pseudo - scale * count * one), Inertial.carrier(scale)
 
     def halved(self, T_link_frame: SE3) -> tuple[Inertial, Inertial]:

@@ -55,8 +55,16 @@ def rounded(values: Iterable[float]) -> list[float]:
 
 
 def rounded_angles(values: Iterable[float]) -> list[float]:
-    """Return angles [rad] of `DUST_DIGITS` digits that are whole degrees where they were: 90° is π/2 in all of its digits."""
-    return [math.radians(round(math.degrees(value), DUST_DIGITS - 1)) + 0.0 for value in values]
+    """Return angles [rad] of `DUST_DIGITS` digits that are whole degrees where they were: 90° is π/2 in all of its digits, and −180° is 180°."""
+    degrees = [round(math.degrees(value), DUST_DIGITS - 1) for value in values]
+    return [math.radians(180.0 if value == -180.0 else value) + 0.0 for value in degrees]
+
+
+def rounded_quaternion(T: SE3) -> list[float]:
+    """Return a rotation as a quaternion (x, y, z, w) with `DUST_DIGITS` digits: of the two, that whose last component other than 0 is positive."""
+    found = rounded(T.quaternion)
+    sign = next((math.copysign(1.0, value) for value in reversed(found) if value), 1.0)
+    return [sign * value + 0.0 for value in found]
 
 
 def comment(text: str) -> Any:
@@ -81,10 +89,10 @@ def rpy(T: SE3) -> tuple[float, float, float]:
     return roll, pitch, yaw
 
 
-def wxyz(T: SE3) -> tuple[float, float, float, float]:
-    """Return the rotation as a quaternion, w first."""
-    x, y, z, w = T.quaternion
-    return float(w), float(x), float(y), float(z)
+def wxyz(T: SE3) -> list[float]:
+    """Return the rotation as a rounded quaternion, w first."""
+    x, y, z, w = rounded_quaternion(T)
+    return [w, x, y, z]
 
 
 def rgba(color: str) -> str:

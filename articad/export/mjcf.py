@@ -250,7 +250,7 @@ class _Writer:
         T = place @ joint.T_rest
         if _is_nested(joint, self.assembly):
             T = metres(self.assembly.mechanism.rest_poses()[link.part.name]) @ link.T_link_part.inverse()
-        self.qpos[joint.name] = [*T.translation.tolist(), *wxyz(T)]
+        self.qpos[joint.name] = [*rounded(T.translation), *wxyz(T)]
         return child(world, "body", {"name": link.name} | _placement(place))
 
     def _body(self, world: Any, link: Link, chain: tuple[LoweredJoint, ...]) -> Any:
@@ -339,7 +339,7 @@ class _Writer:
                 kept.pop("range", None)
             child(body, "joint", attributes | _dynamics(joint.freedoms[0]) | kept)
             R = SE3.from_quaternion(joint.joint.rest)
-            self.qpos[joint.name] = list(wxyz(R.inverse() if joint.backwards else R))
+            self.qpos[joint.name] = wxyz(R.inverse() if joint.backwards else R)
             return
         for freedom in joint.freedoms:
             attributes = _joint(freedom, foreign=self.assembly.foreign) | anchor
@@ -515,14 +515,14 @@ def _material(color: str) -> str:
 
 
 def _placement(T: SE3) -> dict[str, str]:
-    return {"pos": numbers(rounded(T.translation)), "quat": numbers(rounded(wxyz(T)))}
+    return {"pos": numbers(rounded(T.translation)), "quat": numbers(wxyz(T))}
 
 
 def _inertial(body: Any, inertial: Inertial) -> None:
     """Write mass properties by principal axes, which every reader of MJCF knows: PyBullet ignores `fullinertia`."""
     inertial = inertial.inside_bounds().without_dust()
     moments, axes = inertial.principal()
-    quat = rounded(wxyz(SE3.from_rotation(axes)))
+    quat = wxyz(SE3.from_rotation(axes))
     turned = {"quat": numbers(quat)} if quat[0] != 1 else {}
     child(body, "inertial", {"pos": numbers(inertial.com)} | turned | {"mass": number(inertial.mass), "diaginertia": numbers(moments)})
 

@@ -429,7 +429,7 @@ def _isaac(root: Any, loop: LoweredJoint, point: TiedPoint) -> None:
     """Write a point constraint of Isaac Sim's importer."""
     element = child(root, "loop_joint", {"name": f"{loop.name}{point.suffix}", "type": "spherical"})
     for tag, link, T in (("link1", loop.parent, point.near), ("link2", loop.child, point.far)):
-        child(element, tag, {"link": link, "xyz": numbers(T.translation), "rpy": numbers(rpy(T))})
+        child(element, tag, {"link": link, "xyz": numbers(rounded(T.translation)), "rpy": numbers(rounded_angles(rpy(T)))})
 
 
 def _drake(root: Any, loop: LoweredJoint, point: TiedPoint) -> None:
@@ -438,7 +438,7 @@ def _drake(root: Any, loop: LoweredJoint, point: TiedPoint) -> None:
     for tag, link in (("body_A", loop.parent), ("body_B", loop.child)):
         child(element, f"{{{DRAKE}}}ball_constraint_{tag}", {"name": link})
     for tag, T in (("p_AP", point.near), ("p_BQ", point.far)):
-        child(element, f"{{{DRAKE}}}ball_constraint_{tag}", {"value": numbers(T.translation)})
+        child(element, f"{{{DRAKE}}}ball_constraint_{tag}", {"value": numbers(rounded(T.translation))})
 
 
 def _loop_features(model: LoweredModel, loops: Loops, tied: Mapping[str, tuple[TiedPoint, ...]]) -> list[Feature]:

@@ -23,7 +23,7 @@ from articad.export.gltf import shaded
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.lowering import Follows, LoweredModel, lower
-from articad.export.markup import number, rounded
+from articad.export.markup import number, rounded, rounded_quaternion
 from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
 from articad.export.product import of_the_product
@@ -584,7 +584,7 @@ def _position(mm: FloatArray) -> str:
 
 
 def _quaternion(T: SE3) -> str:
-    x, y, z, w = rounded(T.quaternion)
+    x, y, z, w = rounded_quaternion(T)
     return _tuple([w, x, y, z])
 
 

@@ -15,7 +15,7 @@ import articad
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
-from articad.export.markup import child, comment, document, number, rgba, rpy, texts, wxyz
+from articad.export.markup import child, comment, document, number, rgba, rounded_angles, rounded_quaternion, rpy, texts, wxyz
 from articad.export.mjcf import write_mjcf
 from articad.export.names import MAX_LENGTH, FileNames, Names, valid_name
 from articad.export.sdf import write_sdf
@@ -60,6 +60,19 @@ def test_roll_pitch_yaw_are_exact_at_and_near_gimbal_lock(pitch: float, roll: fl
 def test_a_quaternion_is_written_w_first() -> None:
     assert wxyz(SE3.rot_z(math.pi)) == pytest.approx((0, 0, 0, 1), abs=1e-15)
     assert wxyz(SE3.identity()) == (1, 0, 0, 0)
+
+
+@pytest.mark.parametrize("axis", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (-1, 0, 1), (1, -2, 3)])
+def test_a_half_turn_has_one_quaternion_and_one_set_of_angles(axis: tuple[float, float, float]) -> None:
+    """Both signs of a quaternion are one rotation; rounding noise decided between them, and between 180 and -180 degrees."""
+    turns = [SE3.from_axis_angle(axis, sign * (math.pi + off)) for sign in (-1, 1) for off in (-3e-16, 0.0, 3e-16)]
+    quaternions = {tuple(rounded_quaternion(T)) for T in turns}
+    assert len(quaternions) == 1
+    assert next(value for value in reversed(quaternions.pop()) if value) > 0
+    assert len({tuple(rounded_angles(rpy(T))) for T in turns}) == 1
+    for T in turns:
+        assert np.allclose(Rotation.from_quat(rounded_quaternion(T)).as_matrix(), T.rotation, atol=1e-11)
+        assert np.allclose(Rotation.from_euler("xyz", rounded_angles(rpy(T))).as_matrix(), T.rotation, atol=1e-11)
 
 
 def test_colours_are_between_zero_and_one() -> None:

@@ -18,7 +18,9 @@ import pytest
 
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
+from articad.export.gltf import write_glb
 from articad.export.mjcf import write_mjcf
+from articad.export.sdf import write_sdf
 from articad.export.urdf import write_urdf
 from articad.export.usd import write_usd
 from articad.geometry.inscribed import inscribed
@@ -27,7 +29,7 @@ from articad.geometry.mass import MassProperties
 from articad.geometry.part import Part
 from articad.kernels.cache import BuildCache
 from articad.kinematics import declare
-from tests.assemblies import frame
+from tests.assemblies import all_joint_kinds, four_bar, frame
 
 ROOT = Path(__file__).resolve().parents[2]
 Manifold = manifold3d.Manifold
@@ -77,9 +79,15 @@ def digests() -> dict[str, str]:
     base, *others = parts
     joints = [declare.revolute(f"turn_{one.name}", base["at"], one["at"], limits=(-1.0, 1.0)) for one in others]
     assembly = Assembly.from_parts("solids", parts=parts, joints=joints, ground=base.name)
-    for write in (write_mjcf, write_urdf, write_usd):
-        for file, written in write(assembly, cache=BuildCache(None)).files.items():
-            found[f"{write.__name__} {file}"] = hashlib.sha256(written).hexdigest()
+    for made in (assembly, all_joint_kinds()):
+        for write in (write_mjcf, write_urdf, write_usd, write_sdf):
+            for file, written in write(made, cache=BuildCache(None)).files.items():
+                found[f"{made.name} {write.__name__} {file}"] = hashlib.sha256(written).hexdigest()
+        scene = write_glb(made)
+        found[f"{made.name} write_glb"] = hashlib.sha256(scene.files[scene.main]).hexdigest()
+    for loops in ("isaac", "drake"):
+        tree = write_urdf(four_bar(), loops=loops)  # type: ignore[arg-type]
+        found[loops] = hashlib.sha256(tree.files[tree.main]).hexdigest()
     return found
 
 

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 import trimesh
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull, cKDTree
 
 from articad.connectors.se3 import SE3
 from articad.geometry.inscribed import INSIDE_MM, MOST_PIECES, Inscribed, inscribed, missing_bound
+from articad.geometry.inscribed.piece import polytope
 from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.shapes import box, capsule, cylinder, sphere, tube
 
@@ -241,6 +242,46 @@ def test_a_cylinder_and_a_ball_are_recognised(phase: float) -> None:
     assert a.primitive is not None
     assert a.primitive.size == pytest.approx((4, 30), abs=1e-4)
     assert abs(a.frame.z_axis @ T.rotation[:, 2]) == pytest.approx(1)
+
+
+def test_a_long_bar_that_is_nearly_a_box_is_not_replaced_by_one() -> None:
+    """10 m long, with one corner 9 µm inside the box: that is 9e-7 of the length, but 90 times what a piece may be outside."""
+    bar = box(10_000, 100, 100)
+    corner = int(np.argmax(bar.vertices.sum(axis=1)))
+    vertices = bar.vertices.copy()
+    vertices[corner, 0] -= 9e-3
+    found = inscribed(TriMesh(vertices, bar.triangles))
+
+    assert found is not None
+    hull = manifold3d.Manifold.hull_points(vertices)
+    planes = ConvexHull(mesh_of(hull).vertices).equations
+    for mesh in placed(found):
+        assert float((mesh.vertices @ planes[:, :3].T + planes[:, 3]).max()) <= INSIDE_MM
+
+
+def test_a_long_prism_is_no_cylinder_unless_its_deflection_says_so() -> None:
+    """The cylinder through the corners of a prism of 200 sides is outside it by r (1 - cos(pi / 200)): 0.012 mm, at a length of 10 m."""
+    prism = cylinder(100, 10_000, 200)
+    exact, rough = inscribed(prism), inscribed(prism, deflection=1.0)
+
+    assert exact is not None
+    assert rough is not None
+    assert [piece.primitive and piece.primitive.kind for piece in rough.pieces] == ["cylinder"]
+    apothem = 100 * np.cos(np.pi / 200)
+    sides = np.arange(200) * 2 * np.pi / 200 + np.pi / 200
+    normals = np.stack([np.cos(sides), np.sin(sides), np.zeros(200)], axis=1)
+    for mesh in placed(exact):
+        assert float((mesh.vertices @ normals.T).max()) - apothem <= INSIDE_MM
+
+
+def test_the_distance_from_a_piece_is_no_less_where_planes_tie() -> None:
+    """Of planes whose heights differ by less than rounding, one below the point must not hide one that it is above."""
+    cube = polytope(
+        np.array([[1, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1], [0, 0, -1, 1]], dtype=float), np.zeros(3)
+    )
+    assert cube is not None
+    points = np.array([[1 + 5e-4, 1 - 2e-4, 0], [1 - 2e-4, 1 + 5e-4, 0], [0, 1 + 5e-4, 1 - 1e-4], [1 + 3e-4, 1 + 4e-4, 0]])
+    assert cube.distance(points) == pytest.approx([5e-4, 5e-4, 5e-4, 5e-4])
 
 
 def test_a_bore_is_never_entered() -> None:

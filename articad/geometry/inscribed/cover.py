@@ -18,7 +18,7 @@ from articad.geometry.mesh import TriMesh
 
 MOST_PIECES: Final = 32
 BOUND_MM, BOUND_SHARE = 0.5, 0.01  # how far the solid may extend beyond its pieces: the larger of the two; the share is of its diagonal
-SCHEME: Final = "articad.inscribed/4"  # must change with anything that changes pieces
+SCHEME: Final = "articad.inscribed/5"  # must change with anything that changes pieces
 _SLACK_MM, _SLACK_SHARE = 0.25, 0.004  # how far a plane may move inwards: the larger of the two; the share is of the diagonal
 _OF_DEPTH = 0.5  # of the material below a point: at thin walls, less may be missing
 _SAMPLES = 800  # points of the surface at which the pieces are measured, and half as many corners

@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
-from articad.geometry.inscribed.surface import mesh_of, steady
+from articad.geometry.inscribed.surface import INSIDE_MM, mesh_of, steady
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
 from articad.geometry.shapes import box, sphere
@@ -63,7 +63,8 @@ class Grown:
         distance √((h² + k² − 2chk) / (1 − c²)) from their wedge (Karush-Kuhn-Tucker with both multipliers positive).
         """
         heights = points @ self.planes[:, :3].T - self.planes[:, 3]
-        first = (heights > heights.max(axis=1, keepdims=True) - _TIE_MM).argmax(axis=1)  # the first of nearly equal ones
+        top = heights.max(axis=1, keepdims=True)
+        first = (heights > np.maximum(top - _TIE_MM, np.where(top > 0, 0.0, -np.inf))).argmax(axis=1)  # the first of nearly equal ones
         h = heights[np.arange(len(points)), first]
         outside = np.flatnonzero(h > 0)
         far = h.copy()
@@ -137,7 +138,9 @@ def _as_box(mesh: TriMesh) -> Piece | None:
             continue
         wanted = np.array([a + b, a + c, b + c, a + b + c])
         if all(float(np.abs(ways - one).max(axis=1).min()) <= 1e-6 * size for one in wanted):
-            return _box_piece(first, np.array([a, b, c]))
+            made = _box_piece(first, np.array([a, b, c]))
+            off = np.linalg.norm(made.frame.apply(made.mesh.vertices)[:, None] - corners, axis=2).min(axis=1)
+            return made if float(off.max()) <= INSIDE_MM / 2 else None  # of a large hull, corners may lie farther off
     return None
 
 

@@ -9,7 +9,7 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.geometry.faces import smooth_patches
 from articad.geometry.inscribed.piece import DIGITS, Grown, Piece, whole
-from articad.geometry.inscribed.surface import Facets, encloses, nearest, steady, steady_size
+from articad.geometry.inscribed.surface import INSIDE_MM, Facets, encloses, nearest, steady, steady_size
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
 from articad.geometry.shapes import cylinder, sphere
@@ -25,7 +25,7 @@ def round_bodies(mesh: TriMesh, facets: Facets, deflection: float) -> list[Grown
         weights = facets.areas[chosen]
         moments = (normals * weights[:, None]).T @ normals / weights.sum()
         spread, axes = np.linalg.eigh(moments)
-        slack = max(deflection, 1e-6 * float(np.ptp(corners, axis=0).max()))
+        slack = max(deflection, _rounding(float(np.ptp(corners, axis=0).max())))
         one = None
         if spread[0] < 1e-3 < spread[1]:
             one = _cylinder(facets, corners, normals, axes[:, 0], slack)
@@ -34,6 +34,11 @@ def round_bodies(mesh: TriMesh, facets: Facets, deflection: float) -> list[Grown
         if one is not None:
             found.append(one)
     return found
+
+
+def _rounding(size: float) -> float:
+    """Return the distance by which rounding may move corners of a body of some size [mm]; two of them stay within `INSIDE_MM`."""
+    return min(1e-6 * size, INSIDE_MM / 2)
 
 
 def _smooth_faces(mesh: TriMesh, facets: Facets) -> list[NDArray[np.intp]]:
@@ -56,7 +61,7 @@ def _ball(facets: Facets, corners: FloatArray, normals: FloatArray, slack: float
     middles = corners.reshape(-1, 3, 3).mean(axis=1)
     if float(((middles - center) * normals).sum(axis=1).min()) <= 0:  # concave
         return None
-    if float(np.linalg.norm(nearest(facets, center) - center, axis=1).min()) < r - slack - 1e-6 * r:
+    if float(np.linalg.norm(nearest(facets, center) - center, axis=1).min()) < r - slack - _rounding(r):
         return None
     center = np.round(center, DIGITS) + 0.0
     r = round(r, DIGITS)
@@ -86,7 +91,7 @@ def _cylinder(facets: Facets, corners: FloatArray, normals: FloatArray, axis: Fl
     low, high = float(along.min()), float(along.max())
     planar = np.stack([facets.corners @ x - middle[0], facets.corners @ y - middle[1]], axis=-1)  # (N, 3, 2)
     heights = facets.corners @ axis
-    tolerance = 1e-6 * (r + high - low)
+    tolerance = _rounding(r + high - low)
     near = (heights.min(axis=1) < high - tolerance) & (heights.max(axis=1) > low + tolerance)
     if float(_to_origin(planar[near]).min(initial=np.inf)) < r - slack - tolerance:
         return None
