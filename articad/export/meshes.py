@@ -20,6 +20,7 @@ from articad.export.convex import manifold
 from articad.export.names import FileNames
 from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import write_obj, write_stl
+from articad.geometry.needles import without_needles
 from articad.geometry.part import Part, Shape
 from articad.kernels.cache import BuildCache
 
@@ -29,7 +30,8 @@ MM_TO_M = 0.001  # the scale that formats apply to the files
 DRAWN_TRIANGLES = 5000  # target size of a visual mesh, within the next bound
 DRAWN_SHARE, MOST_SHARE = 5e-4, 8e-3  # of its diagonal: deviation of its surface at first, and at most
 DRAWN_MM = 0.05  # deviation at first of a mesh in a file: a pin and its bore, 0.1 mm apart, share no volume there either
-_SCHEME: Final = "articad.drawn/2"  # must change with anything that changes visual meshes
+THINNEST_MM: Final = 1e-5  # of a visual triangle: points in m have 8 digits after the point, where files keep them in single precision
+_SCHEME: Final = "articad.drawn/3"  # must change with anything that changes visual meshes
 _FILE: Final = "drawn.npz"
 
 
@@ -97,7 +99,7 @@ def _simplified(mesh: TriMesh, least: float) -> Drawn | None:
         share *= 2
     coarse = TriMesh(np.array(found.vert_properties[:, :3], dtype=np.float64), np.array(found.tri_verts, dtype=np.int32))
     fewer = coarse.is_closed and coarse.volume > 0 and len(coarse.triangles) < len(mesh.triangles)
-    return Drawn(coarse, share * size) if fewer else None
+    return Drawn(without_needles(coarse, THINNEST_MM), share * size) if fewer else None
 
 
 def built_meshes(parts: Iterable[Part]) -> dict[str, TriMesh]:
