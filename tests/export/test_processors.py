@@ -21,7 +21,7 @@ from articad.connectors.connector import Connector
 from articad.export.gltf import write_glb
 from articad.export.mjcf import write_mjcf
 from articad.export.sdf import write_sdf
-from articad.export.urdf import write_urdf
+from articad.export.urdf import Loops, write_urdf
 from articad.export.usd import write_usd
 from articad.geometry.inscribed import inscribed
 from articad.geometry.inscribed.surface import mesh_of
@@ -79,14 +79,15 @@ def digests() -> dict[str, str]:
     base, *others = parts
     joints = [declare.revolute(f"turn_{one.name}", base["at"], one["at"], limits=(-1.0, 1.0)) for one in others]
     assembly = Assembly.from_parts("solids", parts=parts, joints=joints, ground=base.name)
-    for made in (assembly, all_joint_kinds()):
+    for product in (assembly, all_joint_kinds()):
         for write in (write_mjcf, write_urdf, write_usd, write_sdf):
-            for file, written in write(made, cache=BuildCache(None)).files.items():
-                found[f"{made.name} {write.__name__} {file}"] = hashlib.sha256(written).hexdigest()
-        scene = write_glb(made)
-        found[f"{made.name} write_glb"] = hashlib.sha256(scene.files[scene.main]).hexdigest()
+            for file, written in write(product, cache=BuildCache(None)).files.items():
+                found[f"{product.name} {write.__name__} {file}"] = hashlib.sha256(written).hexdigest()
+        scene = write_glb(product)
+        found[f"{product.name} write_glb"] = hashlib.sha256(scene.files[scene.main]).hexdigest()
+    loops: Loops
     for loops in ("isaac", "drake"):
-        tree = write_urdf(four_bar(), loops=loops)  # type: ignore[arg-type]
+        tree = write_urdf(four_bar(), loops=loops)
         found[loops] = hashlib.sha256(tree.files[tree.main]).hexdigest()
     return found
 
