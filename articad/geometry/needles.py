@@ -22,7 +22,7 @@ def without_needles(mesh: TriMesh, thinnest: float) -> TriMesh:
         thinnest: Height over the longest edge [mm].
     """
     triangles = mesh.triangles.copy()
-    for _ in range(len(triangles)):  # each flip removes a needle, or leaves two thinner triangles at a fan of needles
+    for _ in range(len(triangles)):  # each flip removes a needle and makes none
         heights = _heights(mesh.vertices, triangles)
         for needle in np.flatnonzero(heights < thinnest)[np.argsort(heights[heights < thinnest], kind="stable")].tolist():
             flipped = _flipped(mesh.vertices, triangles, needle, thinnest)

@@ -162,20 +162,32 @@ def _layout(facts: PartFacts, paper: tuple[float, float], *, tables: bool = True
     wanted = list(_tables(facts)) if tables else []
     # the section stands to the right of the left view, or below it if only that fits
     places = product(SCALES, (False,) if facts.section is None else (False, True))
-    return next((layout for scale, below in places if (layout := _layout_at(facts, paper, wanted, scale, below=below)) is not None), None)
+    lines = [(view, kind) for view, kind, *_ in _planned(facts)]
+    layouts = (_layout_at(facts, paper, wanted, lines, scale, below=below) for scale, below in places)
+    return next((layout for layout in layouts if layout is not None), None)
 
 
-def _layout_at(facts: PartFacts, paper: tuple[float, float], wanted: Sequence[Any], scale: float, *, below: bool) -> _Layout | None:
-    """Return the places of views and tables at a scale; None if they do not fit."""
-    planned = [(view, kind) for view, kind, *_ in _planned(facts)]
+def _layout_at(
+    facts: PartFacts, paper: tuple[float, float], wanted: Sequence[Any], lines: Sequence[tuple[str, str]], scale: float, *, below: bool
+) -> _Layout | None:
+    """Return the places of views and tables at a scale; None if they do not fit.
+
+    Args:
+        facts: What to draw.
+        paper: Size of the sheet.
+        wanted: The tables.
+        lines: View and kind of each dimension.
+        scale: Of the views.
+        below: Whether the section stands below the left view.
+    """
     w, d, h = (scale * float(value) for value in facts.box[1] - facts.box[0])
     left, bottom, right, top = FILING + 4.0, EDGE + 4.0, paper[0] - EDGE - 4.0, paper[1] - EDGE - 13.0
     beside_block = paper[0] - EDGE - BLOCK[0] - 4.0  # where the title block begins
     leaders = 26.0  # for texts beside circles
-    x_front = left + _FIRST + _STEP * max(planned.count((view, "DistanceY")) for view in ("front", "top")) + 4.0
+    x_front = left + _FIRST + _STEP * max(lines.count((view, "DistanceY")) for view in ("front", "top")) + 4.0
     y_front = top - h
     x_left = x_front + w + leaders
-    y_top = y_front - (_FIRST + _STEP * planned.count(("front", "DistanceX")) + 10.0) - d
+    y_top = y_front - (_FIRST + _STEP * lines.count(("front", "DistanceX")) + 10.0) - d
     s = 0.0 if facts.section is None else (w if facts.section.right == FRONT.right else d)
     x_section, y_section = (x_left, y_top + d - h) if below else (x_left + d + _GAP + 12.0, y_front)
     far = max(x_section + s, x_left + d) if s else x_left + d
@@ -400,21 +412,22 @@ def _is_at_poles(facts: PartFacts, axis: int, centre: FloatArray, radius: float)
 
     What lies within d of a bound lies within sqrt(2 R d) of the pole, as on every sphere of radius R.
     """
-    shown = FRONT if axis != 1 else TOP
-    right, up = np.array(shown.right), np.array(shown.up)
-    across = 0 if abs(right[axis]) > 0.5 else 1
-    points = np.concatenate([sampled(line) for line in facts.views[shown.name].visible])
+    points, across, right, up = _seen(facts, axis, FRONT if axis != 1 else TOP)
     near = np.abs(points[:, across, None] - facts.box[:, axis]).min(axis=1) < _NEAR_POLE * radius
     aside = points[near, 1 - across] - (centre @ right, centre @ up)[1 - across]
     return bool(near.any() and (np.abs(aside) < 1.01 * np.sqrt(2 * _NEAR_POLE) * radius).all())
 
 
+def _seen(facts: PartFacts, axis: int, view: View) -> tuple[FloatArray, int, FloatArray, FloatArray]:
+    """Return points of the visible lines of a view `(N, 2)` [mm], which of their coordinates is along an axis, and the view's right and up."""
+    right, up = np.array(view.right), np.array(view.up)
+    points = np.concatenate([sampled(line) for line in facts.views[view.name].visible])
+    return points, 0 if abs(right[axis]) > 0.5 else 1, right, up
+
+
 def _ends(facts: PartFacts, axis: int, view: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Return points of the view at both ends of the part along an axis, those nearest to the dimension line."""
-    shown = {"front": FRONT, "top": TOP}[view]
-    right, up = np.array(shown.right), np.array(shown.up)
-    points = np.concatenate([sampled(line) for line in facts.views[view].visible])
-    across = 0 if abs(right[axis]) > 0.5 else 1
+    points, across, right, up = _seen(facts, axis, {"front": FRONT, "top": TOP}[view])
     found = []
     for bound in facts.box[:, axis]:
         off = np.abs(points[:, across] - bound)
