@@ -235,6 +235,20 @@ def test_play_moves_every_joint_with_its_loops_and_stops(open_page: Open, make: 
     assert_silent(opened)
 
 
+@pytest.mark.parametrize("beyond", [1.7, 2.5, 4.0, 7.3], ids=str)
+def test_a_loop_that_stood_at_its_dead_point_goes_back_on_its_branch(open_page: Open, beyond: float) -> None:
+    """Links of 30 and 163 mm, 90 and 70 mm: the crank's branch ends at 91.6°, where another one begins."""
+    assembly = four_bar()
+    name = assembly.drivers[0].name
+    opened = open_page(report_page(assembly))
+
+    for back in (assembly.drivers[0].rest, 0.3, 1.54, 1.59):
+        assert not opened(f"articad.set({{ {name}: {beyond} }})")
+        assert opened(f"articad.q()['{name}']") == pytest.approx(1.599, abs=1e-3), "it stands at the dead point"
+        assert opened(f"articad.set({{ {name}: {back} }})")
+        assert error_of(opened, assembly, np.array([back])) < 1e-9
+
+
 def test_a_link_restores_pose_camera_hidden_parts_sections_and_explosion(open_page: Open) -> None:
     text = report_page(hinged())
     opened = open_page(text)

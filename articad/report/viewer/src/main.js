@@ -17,6 +17,7 @@ const mechanism = new Mechanism(model);
 const solver = new Solver(mechanism);
 const $ = (id) => document.getElementById(id);
 let Q = mechanism.rest.slice();
+let lastArrived = Q; // the last coordinates that were reached as wanted: Q, unless the branch ended before
 let view = null;
 const measuring = { on: false, points: [] };
 
@@ -25,9 +26,9 @@ const measuring = { on: false, points: [] };
 const shown = (value, unit) => (unit === "rad" ? `${(value * DEGREES).toFixed(1)}°` : unit === "mm" ? `${value.toFixed(1)} mm` : value.toFixed(3));
 
 // Move to coordinates given by name; the others stay, or go to rest. Loops follow; false where their branch ends before.
+// Two branches meet at a dead point. The way back from one begins where the mechanism was before, so that it keeps its branch.
 function set(values, { others = "stay" } = {}) {
-  const from = others === "rest" ? mechanism.rest.slice() : Q;
-  const wanted = from.slice();
+  const wanted = others === "rest" ? mechanism.rest.slice() : Q.slice();
   mechanism.columns.forEach((column, index) => {
     if (column.name in values && (!solver.needed || !column.follows)) wanted[index] = values[column.name];
   });
@@ -37,11 +38,12 @@ function set(values, { others = "stay" } = {}) {
     const first = joint.column + at, turn = wanted.slice(first, first + 4), norm = Math.hypot(...turn);
     turn.forEach((value, k) => (wanted[first + k] = norm ? value / norm : Number(k === 3)));
   }
-  const { Q: reached, arrived } = solver.follow(from, wanted);
-  Q = reached;
+  const reached = solver.follow(others === "rest" ? mechanism.rest.slice() : lastArrived, wanted);
+  Q = reached.Q;
+  if (reached.arrived) lastArrived = Q;
   update();
-  if (!arrived) say("The mechanism cannot go on from here: a dead point, or its branch ends.");
-  return arrived;
+  if (!reached.arrived) say("The mechanism cannot go on from here: a dead point, or its branch ends.");
+  return reached.arrived;
 }
 
 let quiet = false; // while several joints are written, the page is brought up to date once
@@ -486,7 +488,7 @@ const FILM_FRAMES = 40; // for each joint, of at most three
 // The motion that Play shows, as so many painted pictures; then the model stands as before.
 async function film(use) {
   stop();
-  const before = Q, movers = controls.map((control) => control.mover);
+  const before = [Q, lastArrived], movers = controls.map((control) => control.mover);
   for (const mover of movers) mover.rest = mover.restValue();
   const total = FILM_FRAMES * Math.min(3, Math.max(1, movers.length));
   const target = document.createElement("canvas");
@@ -502,7 +504,7 @@ async function film(use) {
     });
     say("Saved.");
   } finally {
-    Q = before;
+    [Q, lastArrived] = before;
     update();
   }
 }
@@ -700,14 +702,15 @@ function seenAt(hit, Q_there) {
 function moved(driver, value) {
   const wanted = Q.slice();
   wanted[driver.column] = value;
-  return solver.follow(Q, wanted).Q;
+  return solver.follow(lastArrived, wanted);
 }
 
-// Pixels by which the grabbed point moves for one unit of a driver.
+// Pixels by which the grabbed point moves for one unit of a driver: upwards, or downwards where it cannot go up.
 function sensitivity(hit, driver) {
   const step = nudge(driver), value = Q[driver.column];
-  const way = driver.endless || value + step <= driver.upper ? step : -step;
-  const [x0, y0] = seenAt(hit, Q), [x1, y1] = seenAt(hit, moved(driver, value + way));
+  let way = step, there = driver.endless || value + step <= driver.upper ? moved(driver, value + step) : null;
+  if (!there?.arrived) [way, there] = [-step, moved(driver, value - step)];
+  const [x0, y0] = seenAt(hit, Q), [x1, y1] = seenAt(hit, there.Q);
   return [(x1 - x0) / way, (y1 - y0) / way];
 }
 
