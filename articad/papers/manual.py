@@ -44,7 +44,7 @@ _VIEWS: Final = {
     "iso_below": "front right, below", "iso_below_left": "front left, below",
 }  # fmt: skip
 _PROBE: Final = 110  # pixels of the pictures that serve to choose a view
-_BETTER: Final = 1.3  # a view that is as much better than that of the page before replaces it
+_BETTER: Final = 1.3  # a view that is as much better than that of the assembly's page before replaces it
 _FASTENED: Final = {
     "snap": "snaps in", "press": "is pressed in", "circlip": "is held by a circlip", "screw": "is screwed on", "adhesive": "is glued",
     "purchased": "is bought as one piece",
@@ -92,7 +92,8 @@ class _Manual:
         self.number = {part: item.number for item in self.items for part in item.parts}
         self.item = {item.number: item for item in self.items}
         self.joints = {joint.name: joint for joint in self.product.joints}
-        self.view = "iso"
+        self.view = "iso"  # of the present page
+        self.views: dict[str, str] = {}  # of the last page of each assembly
 
     # ------------------------------------------------------------------ the cover, and the pictures of items
 
@@ -232,7 +233,7 @@ class _Manual:
         away = SE3.from_translation(path[0])
         moved = {name: away @ T if name in step.parts else T for name, T in poses.items()}
         scene = self._scene(parts, moved, new=step.parts)
-        self.view = _best_view(placed, scene, step, path, self.view)
+        self.view = self.views[step.assembly] = _best_view(placed, scene, step, path, self.views.get(step.assembly, "iso"))
         left, right, top = _MARGIN + 12.0, PAGE[0] - _MARGIN - 12.0, _TOP
         width, height = round((right - left) * self.dots), round((top - bottom) * self.dots)
         also = np.concatenate([item.vertices for item in placed.items if len(item.mesh.vertices)])

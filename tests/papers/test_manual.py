@@ -119,6 +119,23 @@ def test_small_parts_are_shown_in_a_close_up() -> None:
     assert counts[("box",)] == 1
 
 
+def test_a_page_keeps_the_view_of_its_own_assembly() -> None:
+    """A case that is open below gets a thing from there; the first part of a sub-assembly is not seen from below for that."""
+    turned = {name: solid.rotate((180, 0, 0)) for name, solid in {"box": BOX, "thing": INSIDE, "lid": LID}.items()}
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in turned.items()]
+    product = Assembly.from_parts("case", parts=parts, joints=[fixed("one", "box", "thing"), fixed("two", "box", "lid")], ground="box")
+    order = product.assembly_order()
+    box, *inside = order.steps
+    of_another = box.model_copy(update={"assembly": "drawer", "parts": ("lid",)})
+    longer = order.model_copy(update={"steps": (box, *inside, of_another, inside[0])})
+    told = [page.told for page in manual_of(product, longer, items_of(product), dots=1.0)]
+    views = [page["view"] for page in told if page["page"] == "step"]
+
+    assert "below" in views[1]
+    assert views[-2] == "iso"
+    assert "below" in views[-1]
+
+
 def test_words_state_how_parts_are_fastened_and_what_is_proven() -> None:
     words = [" ".join(text.words for text in page.texts) for page in steps()]
     (lid,) = (text for text, step in zip(words, order().steps, strict=True) if step.parts == ("lid",))
