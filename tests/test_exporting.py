@@ -21,7 +21,7 @@ from articad.kernels.kernel import BuildCache
 from articad.processes import launcher
 from articad.runs import exporting
 from articad.runs.exporting import Exports
-from articad.runs.record import record_assembly, record_checked, record_export
+from articad.runs.record import record_assembly, record_certificate, record_checked, record_export
 from articad.runs.run import Run, RunRequest
 from tests.test_commands import write_chest
 
@@ -154,18 +154,36 @@ def test_a_refuted_certificate_is_saved_as_refuted(run: Run, chest: Assembly) ->
     assert [finding["code"] for finding in saved["findings"] if finding["severity"] == "error"] == ["E_CERTIFICATE_REFUTED"]
 
 
-def test_a_proof_too_large_for_the_checker_is_not_called_refuted(run: Run, chest: Assembly, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("asks", [True, False], ids=["build", "certify"])
+def test_a_proof_too_large_for_the_checker_is_not_called_refuted(
+    run: Run, chest: Assembly, asks: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither by a build nor by `certify`, which does not ask the checker to read files; both say that it is not checked."""
     certificate = chest.certify(check=False)
     size = len(certificate.mesh_files()["_proof.npz"])
     monkeypatch.setattr("articad.runs.record.BYTES", size - 1)
-    verified = record_checked(run, certificate)
     reason = f"_proof.npz has {size} bytes, more than the {size - 1} that it reads"
-    assert verified == {"ok": False, "checked": False, "faults": [reason]}
+    if asks:
+        assert record_checked(run, certificate) == {"ok": False, "checked": False, "faults": [reason]}
+    else:
+        assert not record_certificate(run, certificate)["ok"]
     saved = json.loads((run.path / "certificate.json").read_bytes())
     assert not saved["ok"]
     (finding,) = [finding for finding in saved["findings"] if finding["severity"] == "error"]
     assert (finding["code"], finding["message"]) == ("E_NOT_CHECKED", f"The certificate checker does not read the proof: {reason}.")
     assert "articad certify RUN --joints" in finding["hint"]
+
+
+def test_a_file_too_large_for_the_checker_is_not_called_refuted(
+    run: Run, chest: Assembly, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record_certificate(run, chest.certify(check=False))
+    assert cli.main(["verify-certificate", str(run.path)]) == 0
+    monkeypatch.setattr("articad.certificates.verifier.BYTES", 1000)
+    assert cli.main(["verify-certificate", str(run.path)]) == 1
+    said = capsys.readouterr().out
+    assert "certificate.json: not checked." in said
+    assert "refuted" not in said
 
 
 def test_a_complete_build_says_that_a_refuted_proof_is_refuted(

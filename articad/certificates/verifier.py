@@ -31,6 +31,7 @@ import numpy as np
 from articad.certificates.verifier_tolerance import Tolerance
 
 BYTES = 2**29  # largest size of a file
+UNREAD = f"is larger than {BYTES} bytes"  # why a file is not read: this refutes nothing
 PROOF = "_proof"  # no part has this name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
 HALF = 0.5  # largest deviation of entries of a rotation by which a loop may be open: it excludes half a turn, even with 1 rad more
@@ -93,7 +94,7 @@ def content(file: Path) -> bytes:
     handle = os.open(file, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with os.fdopen(handle, "rb") as stream:
         need(stat.S_ISREG(os.fstat(handle).st_mode), f"{file.name} is not a file")
-        need(os.fstat(handle).st_size <= BYTES, f"{file.name} is larger than {BYTES} bytes")
+        need(os.fstat(handle).st_size <= BYTES, f"{file.name} {UNREAD}")
         return stream.read(BYTES)
 
 

@@ -70,7 +70,7 @@ def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument("--meshes", metavar="DIR", help="its meshes, <part>.npz (the folder certificate/ beside it)"),
 )
 def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.certificates.verifier import verify_file
+    from articad.certificates.verifier import UNREAD, verify_file
     from articad.errors import ReadError
 
     named = Path(options.file)
@@ -88,7 +88,8 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
     stated = [] if faults else _stated(json.loads(read_file(file, RECORD_BYTES)))
     for line in [*faults, *stated]:
         terminal.say(f"  {line}")
-    terminal.say(f"{file}: {'refuted' if faults else 'accepted'}.")
+    verdict = "accepted" if not faults else "not checked" if faults[0].endswith(UNREAD) else "refuted"
+    terminal.say(f"{file}: {verdict}.")
     return {"schema": "articad.verification/1", "ok": not faults, "file": str(file), "faults": faults, "stated": stated, "findings": []}
 
 

@@ -104,9 +104,12 @@ def record_page(run: Run, assembly: Assembly) -> Path:
 
 
 def record_certificate(run: Run, certificate: Certificate) -> Report:
-    """Save a certificate and its meshes; return its report."""
-    report = certificate.to_json()
-    _save_certificate(run, certificate, report, certificate.mesh_files())
+    """Save a certificate and its meshes; return its report. With a file that the independent checker does not read, it is not ok."""
+    report, meshes = certificate.to_json(), certificate.mesh_files()
+    if certificate.ok and (reason := _unread(json.dumps(report).encode(), meshes)):
+        certificate = _not_checked(certificate, reason)
+        report = certificate.to_json()
+    _save_certificate(run, certificate, report, meshes)
     return report
 
 
@@ -126,17 +129,22 @@ def record_checked(run: Run, certificate: Certificate) -> Report:
     """
     report, meshes = certificate.to_json(), certificate.mesh_files()
     text = json.dumps(report).encode()
-    size, name = max((len(content), name) for name, content in {"certificate.json": text, **meshes}.items())
-    is_read = size <= BYTES
-    faults = _faults(text, meshes) if is_read else [f"{name} has {size} bytes, more than the {BYTES} that it reads"]
+    unread = _unread(text, meshes)
+    faults = [unread] if unread else _faults(text, meshes)
     if faults and certificate.ok:
-        certificate = certificate.refuted(faults[0]) if is_read else _unread(certificate, faults[0])
+        certificate = _not_checked(certificate, unread) if unread else certificate.refuted(faults[0])
         report = certificate.to_json()
     _save_certificate(run, certificate, report, meshes)
-    return {"ok": not faults, "checked": is_read, "faults": faults}
+    return {"ok": not faults, "checked": not unread, "faults": faults}
 
 
-def _unread(certificate: Certificate, reason: str) -> Certificate:
+def _unread(report: bytes, meshes: Mapping[str, bytes]) -> str:
+    """Return which file of a certificate is larger than its checker reads; empty if none is."""
+    size, name = max((len(content), name) for name, content in {"certificate.json": report, **meshes}.items())
+    return f"{name} has {size} bytes, more than the {BYTES} that it reads" if size > BYTES else ""
+
+
+def _not_checked(certificate: Certificate, reason: str) -> Certificate:
     """Return a certificate with the error that its checker does not read it."""
     message = f"The certificate checker does not read the proof: {reason}."
     hint = "Prove some joints at a time: `articad certify RUN --joints A,B`; or each joint alone: `articad certify RUN --no-pairs`."
