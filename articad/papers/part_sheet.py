@@ -52,7 +52,7 @@ _HOLE_HEAD: Final = ("hole", "view", "x", "y", "Ø", "depth", "fit")
 _NAME_WIDTHS: Final = (38.0, 16.0)
 _GAP: Final = 14.0  # between views
 _LEAST_ISO: Final = 30.0  # width that tables leave for the isometric view
-_TINY: Final = 0.1  # scale at which bores are dots: a larger paper is taken for the next scale already
+_TINY: Final = 0.2  # scale at which bores and walls are dots and lines: a larger paper is taken for the next scale already
 
 
 @dataclass(frozen=True)
@@ -199,6 +199,7 @@ def _layout_at(
     corners = [(x_left, ceiling), (far + leaders - _LEAST_ISO, top)]  # there, or to the right of all views, up to the top
     if below:
         corners.insert(1, (x_left - _LEAST_ISO, ceiling))  # below the section, with the isometric view elsewhere
+    corners.append((left, min(y_top, y_section) - 16.0))  # below all views: those of a long, slim part
     tries = [(x, y, apart) for x, y in corners for apart in ((False, True) if x == x_left else (False,))]
     seated = next((found for x, y, apart in tries if (found := _seated(wanted, x, y_free, right, y, apart=apart)) is not None), None)
     if seated is None:

@@ -160,24 +160,43 @@ def test_tables_go_beside_the_views_where_a_larger_scale_fits_then() -> None:
     assert frame.scale == 0.5
 
 
-def test_the_section_of_a_flat_part_goes_below_the_left_view_where_a_larger_scale_fits_then() -> None:
-    """Beside each other, the front view, the left view and the section of a plate of 200 x 120 mm need 330 mm at 1 : 2, of 263 mm on A4."""
-    script = """
-from build123d import Align, Box, Cylinder, Pos
+def arranged(dimensions: dict[str, float], rotation: str, z: list[int]) -> DrawingSheet:
+    """Return the sheet of a plate with two holes and a connector in the middle of its upper face, turned about x."""
+    script = f"""
+from build123d import Align, Axis, Box, Cylinder, Pos
 def build(part):
     d = part.dimensions
     plate = Box(d["width"], d["depth"], d["thickness"], align=(Align.CENTER, Align.CENTER, Align.MAX))
     for x in (-1, 1):
         plate -= Pos(x * d["hole_x"], 0, 0) * Cylinder(d["hole_diameter"] / 2, 20)
-    return plate, {"bore": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
+    return plate.rotate(Axis.X, {rotation}), {{"bore": {{"o": (0, 0, 0), "z": {tuple(z)}, "x": (1, 0, 0)}}}}
 """
-    part = PLAN["parts"][0] | {"dimensions": {"width": 200, "depth": 120, "thickness": 15, "hole_x": 70, "hole_diameter": 25}}
+    (connector,) = PLAN["parts"][0]["connectors"]
+    part = PLAN["parts"][0] | {"dimensions": dimensions, "connectors": [connector | {"o": [0, 0, 0], "z": z, "x": [1, 0, 0]}]}
     plan = PLAN | {"parts": [part], "joints": [], "freedoms": 0}
     assembly = Assembly.from_plan(AssemblyPlan.from_json(plan), {"plate": script}, cache=BuildCache(Path(tempfile.mkdtemp())))
-    one = next(one for one in drawings_of(assembly) if one.part == "plate")
-    assert one.scale == 0.5
-    assert one.size == (297.0, 210.0)
+    return next(one for one in drawings_of(assembly) if one.part == "plate")
+
+
+@pytest.mark.parametrize(
+    ("size", "rotation", "z"), [((200, 120, 15, 70, 25), "0", [0, 0, 1]), ((270, 20, 8, 125, 8), "90", [0, -1, 0])], ids=["plate", "bar"]
+)
+def test_sections_and_tables_are_placed_so_that_a_larger_scale_fits(size: tuple[float, ...], rotation: str, z: list[int]) -> None:
+    """At 1 : 2 on A4, of which 263 mm can be drawn on.
+
+    The plate of 200 x 120 mm needs 330 mm with its section beside the left view, so that goes below it. The bar of 270 mm and its leaders
+    end at 200 mm, so that no table fits beside it; they go below all views.
+    """
+    names = ("width", "depth", "thickness", "hole_x", "hole_diameter")
+    one = arranged(dict(zip(names, size, strict=True)) | {f"other_{k}": k + 0.5 for k in range(8)}, rotation, z)
+    assert (one.scale, one.size) == (0.5, (297.0, 210.0))
     assert_nothing_overlaps(one)
+
+
+def test_a_part_that_is_tiny_on_a4_is_drawn_on_a3() -> None:
+    """A shade of 140 mm with a wall of 2 mm fits on A4 at 1 : 5 only, where its wall has 0.4 mm."""
+    shade = next(one for one in drawings_of(read(ROOT / "examples/desk_lamp")) if one.part == "shade")
+    assert (shade.scale, shade.size) == (0.5, (420.0, 297.0))
 
 
 def test_the_views_show_what_a_workshop_needs() -> None:
