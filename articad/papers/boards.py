@@ -20,6 +20,7 @@ __all__ = ["Board", "Cut", "Sheet", "boards_of", "cut_list_json", "nested"]
 
 _THICK_MM: Final = 60.0  # a board is at most this thick,
 _SHARE: Final = 0.25  # and at most this share of its width
+_LONG_MM: Final = 60.0  # and at least this long: smaller washers, clips and links are punched or turned
 _FLAT: Final = 0.5  # share of length × width that each of its two faces covers
 _SAME_MM: Final = 1e-3  # differences of places that are rounding
 
@@ -84,7 +85,7 @@ def boards_of(assembly: Assembly, items: Sequence[Item]) -> tuple[Board, ...]:
         if part.mesh is None or item.size_mm is None or item.supply == "purchased":
             continue
         flat, size = int(np.argmin(item.size_mm)), sorted(item.size_mm)
-        if size[0] > min(_THICK_MM, _SHARE * size[1]):
+        if size[0] > min(_THICK_MM, _SHARE * size[1]) or size[2] < _LONG_MM:
             continue
         low, high = part.mesh.bounds
         areas = [0.0, 0.0]

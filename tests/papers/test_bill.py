@@ -155,6 +155,7 @@ def test_boards_lie_on_sheets_without_overlap_one_kerf_apart_and_along_the_grain
     assert not nested(boards, (410.0, 910.0), kerf_mm=4.0, turn=True)[1]
 
 
-def test_a_block_and_a_cylinder_are_no_boards(tmp_path: Path) -> None:
-    blocks = Assembly.from_parts("one", parts=[block("cube", (50, 60, 40))], joints=[], ground="cube")
-    assert boards_of(blocks, items_of(blocks)) == ()
+def test_a_block_a_clip_and_a_cylinder_are_no_boards(tmp_path: Path) -> None:
+    for size in ((50, 60, 40), (26, 26, 4)):
+        blocks = Assembly.from_parts("one", parts=[block("cube", size)], joints=[], ground="cube")
+        assert boards_of(blocks, items_of(blocks)) == (), size
