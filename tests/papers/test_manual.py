@@ -129,7 +129,7 @@ def test_a_page_keeps_the_view_of_its_own_assembly() -> None:
     of_another = box.model_copy(update={"assembly": "drawer", "parts": ("lid",)})
     longer = order.model_copy(update={"steps": (box, *inside, of_another, inside[0])})
     told = [page.told for page in manual_of(product, longer, items_of(product), dots=1.0)]
-    views = [page["view"] for page in told if page["page"] == "step"]
+    views = [str(page["view"]) for page in told if page["page"] == "step"]
 
     assert "below" in views[1]
     assert views[-2] == "iso"
