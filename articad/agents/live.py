@@ -40,6 +40,7 @@ _SHOWN_CHARACTERS: Final = 300  # of a provider's own message
 _LOCAL_HOSTS: Final = frozenset({"localhost", "127.0.0.1", "::1", "0.0.0.0", "host.docker.internal"})  # noqa: S104 - compared, never bound
 _SECRET_NAME = re.compile(r"KEY|TOKEN|SECRET|PASSWORD|CREDENTIAL", re.IGNORECASE)
 _SECRET_SHAPE = re.compile(r"(?i)\b(?:sk|pk|rk|key|api|gsk|xai|AIza)[-_][\w*.-]{6,}|\bbearer\s+[^\s,;]+|//[^/@\s]+:[^/@\s]+@")
+_BLANK = re.compile(r"[\x00-\x20\x7f]")  # what no address holds, and what some readers of addresses leave out
 _SHORTEST_SECRET = 6  # characters; shorter values of such variables are words like "none"
 _TOLD: Final = "one JSON object and nothing else"  # every prompt that describes the form of its answer contains these words
 _FORM = (
@@ -67,7 +68,7 @@ class LiteLLM:
 
     Raises:
         TransportError: `E_KEY_MISSING`, naming the environment variable, if the provider needs one that is not set; `E_TRANSPORT` if
-            models cannot be called on this machine.
+            models cannot be called on this machine, or `api_base` is no address.
     """
 
     def __init__(
@@ -83,6 +84,8 @@ class LiteLLM:
         tries: int = TRIES,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
+        if api_base is not None:
+            _require_address(api_base)
         self._calls = Calls.shared()
         self._api_base = api_base
         self._is_local = api_base is not None and urlsplit(api_base).hostname in _LOCAL_HOSTS
@@ -95,6 +98,7 @@ class LiteLLM:
         self._temperature, self._timeout, self._tries, self._sleep = temperature, timeout, tries, sleep
         self._takes_no_schema: set[str] = set()
         self._blind: set[str] = set()
+        self._sizes: set[int] = set()  # of the vectors that it gave
         for name in {self._model, *self._models.values(), *filter(None, [self._vision_model])}:
             if not self._is_local and not self._known[name]["has_key"]:
                 raise self._key_error(name, "is not set")
@@ -151,6 +155,10 @@ class LiteLLM:
             if "error" in answer:
                 raise self._failure(answer["error"], self._model, 1)
             rows += answer["rows"]
+        self._sizes |= {len(row) for row in rows}
+        if len(self._sizes) > 1:
+            message = f"{self._model} gave vectors of {min(self._sizes)} and of {max(self._sizes)} numbers."
+            raise transport_error("E_TRANSPORT", message, "Name another model for --embeddings.")
         return rows
 
     @property
@@ -319,6 +327,22 @@ class LiteLLMEmbedder:
             BudgetError: If the meter allows no further call.
         """
         return normalised(self._llm.vectors(texts, self._meter) if texts else np.zeros((0, 1)))
+
+
+def _require_address(address: str) -> None:
+    """Refuse an address that is none, before anything is asked and asked again.
+
+    Raises:
+        TransportError: If it is not http:// or https://, a host, and perhaps a port and a path.
+    """
+    try:
+        stated = urlsplit(address)
+        is_one = stated.scheme in ("http", "https") and bool(stated.hostname) and stated.port != 0 and not _BLANK.search(address)
+    except ValueError:  # brackets that do not close, a port that is no number
+        is_one = False
+    if not is_one:
+        message = f"{without_secrets(address)!r} is not the address of an endpoint."
+        raise transport_error("E_TRANSPORT", message, "Write it as http://127.0.0.1:8000/v1.")
 
 
 def _no_calls(problem: object) -> TransportError:

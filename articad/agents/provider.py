@@ -19,6 +19,7 @@ import ctypes
 import gc
 import importlib
 import json
+import math
 import os
 import signal
 import socket
@@ -31,6 +32,8 @@ from articad.aliases import Json
 
 LARGEST_BODY: Final = 8 * 2**20  # bytes of an answer, as sent and decompressed: twice the longest text that is accepted
 MEMORY: Final = 224 * 2**20  # bytes of private data that a call may add to what the import took
+_MOST_TOKENS: Final = 10**12  # of one call; a sum of larger numbers may have too many digits to be printed
+_MOST_NUMBERS: Final = 16_384  # of one vector; models give up to a few thousand
 _PER_BYTE: Final = 8  # copies of a request that the client libraries may hold
 _EARLY: Final = (
     "httpcore",
@@ -126,7 +129,7 @@ def _become(litellm: Any, line: socket.socket, parent: int) -> NoReturn:
         _become_environment(order["environment"])
         with contextlib.redirect_stdout(sys.stderr):
             answer = _answer(litellm, order)
-        line.sendall(json.dumps(answer).encode())
+        line.sendall(json.dumps(answer, ensure_ascii=False).encode(errors="replace"))  # no file holds half of a surrogate pair
     except MemoryError:
         with contextlib.suppress(BaseException):
             line.sendall(b'{"error": {"kind": "memory"}}')
@@ -147,8 +150,8 @@ def _limit_memory(more: int) -> None:
 
 def _answer(litellm: Any, order: Json) -> Json:
     tasks: dict[str, Callable[[Any, Json], Json]] = {"describe": _describe, "complete": _complete, "embed": _embed}
-    _keep_to("" if order["do"] == "describe" else order["arguments"].get("api_base"))
     try:
+        _keep_to("" if order["do"] == "describe" else order["arguments"].get("api_base"))
         return tasks[order["do"]](litellm, order)
     except MemoryError:
         raise
@@ -187,7 +190,7 @@ def _complete(litellm: Any, order: Json) -> Json:
     cost = _tried(lambda: litellm.completion_cost(completion_response=response, model=model), fallback=None)
     return {
         "text": text,
-        "usage": [max(int(getattr(used, name, 0) or 0), 0) for name in ("prompt_tokens", "completion_tokens")],
+        "usage": [min(max(int(getattr(used, name, 0) or 0), 0), _MOST_TOKENS) for name in ("prompt_tokens", "completion_tokens")],
         "cost": float(cost) if cost else None,
         "fingerprint": next((mark for mark in marks if isinstance(mark, str) and mark), None),
     }
@@ -198,7 +201,12 @@ def _embed(litellm: Any, order: Json) -> Json:
     rows = sorted((dict(row) for row in response.data), key=lambda row: int(row["index"]))
     if len(rows) != len(order["texts"]):
         raise EmptyAnswerError
-    return {"rows": [[float(number) for number in row["embedding"]] for row in rows]}
+    if not all(0 < len(row["embedding"]) <= _MOST_NUMBERS for row in rows):
+        raise BodyError(f"its vectors do not have between 1 and {_MOST_NUMBERS} numbers")
+    vectors = [[float(number) for number in row["embedding"]] for row in rows]
+    if not all(math.isfinite(number) for vector in vectors for number in vector):
+        raise BodyError("its vectors hold numbers that are not finite")
+    return {"rows": vectors}
 
 
 def _arguments(litellm: Any, order: Json) -> Json:

@@ -16,8 +16,8 @@ from articad.findings import Finding
 from articad.plan.reading import MOST_LEVELS, is_nested_deeper
 
 TRIES: Final = 3  # a model that fails three times does not find the form
-_FENCED: Final = re.compile(r"^[ \t]*```[ \t]*([\w+-]*)[^\n]*\n(.*?)^[ \t]*```[ \t]*$", re.DOTALL | re.MULTILINE)
-_OPEN_FENCE: Final = re.compile(r"\A\s*```[ \t]*[\w+-]*[^\n]*\n")
+_FENCE: Final = re.compile(r"^[ \t]*```[ \t]*([\w+-]*)([^\n]*)$", re.MULTILINE)
+_OPEN_FENCE: Final = re.compile(r"\A\s*```[^\n]*\n")
 _SHOWN = 60  # characters of a reply that an error quotes
 _OBJECTION_CHARACTERS: Final = 1000
 _TOO_DEEP: Final = f"it is nested deeper than {MOST_LEVELS} levels"
@@ -61,7 +61,7 @@ def parse_script(text: str, *, step: str) -> bytes:
     Raises:
         OutputError: `E_REPLY_SCHEMA`, if there is none.
     """
-    blocks = [block for language, block in _FENCED.findall(text) if language.lower() in {"", "python", "py", "python3"}]
+    blocks = [block for language, block in _fenced(text) if language.lower() in {"", "python", "py", "python3"}]
     if not blocks:
         blocks = [_OPEN_FENCE.sub("", text)]  # no fence, or one that was never closed
     defining = [block for block in blocks if re.search(r"^def build\(", block, re.MULTILINE)]
@@ -99,10 +99,25 @@ def unusable(problem: str, raw: str, *, step: str) -> OutputError:
 
 def _candidates(text: str) -> Iterable[str]:
     yield text
-    yield from (block for _, block in _FENCED.findall(text))
+    yield from (block for _, block in _fenced(text))
     start, end = text.find("{"), text.rfind("}")
     if 0 <= start < end:
         yield text[start : end + 1]
+
+
+def _fenced(text: str) -> Iterable[tuple[str, str]]:
+    """Yield the language and the content of each fenced block, in time linear in the length of the text.
+
+    A line that begins with three backticks opens a block, and the next line that holds nothing else closes it. An expression for a whole
+    block would look for its end once more at every opening line.
+    """
+    language, start = "", 0  # of the open block; 0 where none is open
+    for fence in _FENCE.finditer(text):
+        if not start:
+            language, start = fence[1], fence.end() + 1
+        elif not fence[1] and not fence[2].strip(" \t"):
+            yield language, text[start : fence.start()]
+            start = 0
 
 
 def _kind(value: Any) -> str:

@@ -200,7 +200,7 @@ class ExperienceStore:
         """Yield texts' numbers and their similarity to a text, the nearest first."""
         query = self.embedder.embed([text])[0]
         if self.index == "exact":
-            numbers, vectors = self._vectors(database, topic, kind)
+            numbers, vectors = self._vectors(database, topic, kind, len(query))
             likeness = vectors @ query if len(numbers) else np.zeros(0, np.float32)
         else:
             count, stamp = database.execute(
@@ -211,30 +211,33 @@ class ExperienceStore:
                 return
             label = f"{self.embedder.name} {topic} {kind}"
             index = faiss_index.load(self.folder, label, stamp)
-            if index is None:
-                index = faiss_index.build(self.folder, label, stamp, *self._vectors(database, topic, kind))
+            if index is None or index.d != len(query):
+                index = faiss_index.build(self.folder, label, stamp, *self._vectors(database, topic, kind, len(query)))
             (likeness,), (numbers,) = index.search(query[None], min(count, limit * _TEXTS_OF_A_CASE))
         for place in np.lexsort((numbers, -likeness)):
             yield int(numbers[place]), float(likeness[place])
 
-    def _vectors(self, database: sqlite3.Connection, topic: str, kind: Kind) -> tuple[IntArray, FloatArray]:
-        """Return the numbers and vectors of all texts of a topic; missing vectors of this space are computed and stored."""
+    def _vectors(self, database: sqlite3.Connection, topic: str, kind: Kind, size: int) -> tuple[IntArray, FloatArray]:
+        """Return the numbers and vectors of all texts of a topic; missing vectors of this space are computed and stored.
+
+        So are those of another size: a provider may give another model the same name.
+        """
         joined = "texts left join vectors on vectors.text = number and space = ? where topic = ? and kind = ?"
         query = f"select number, texts.text, vector from {joined} order by number"  # noqa: S608 - the text is articad's own
         rows = database.execute(query, (self.embedder.name, topic, kind)).fetchall()
         if not rows:
             return np.zeros(0, np.int64), np.zeros((0, 1), np.float32)
-        missing = [number for number, _, vector in rows if vector is None]
-        fresh = dict(zip(missing, self.embedder.embed([text for _, text, vector in rows if vector is None]), strict=True))
+        missing = {number: text for number, text, vector in rows if vector is None or len(vector) != size * np.float32().nbytes}
+        fresh = dict(zip(missing, self.embedder.embed(list(missing.values())), strict=True))
         if fresh:
             self._keep([(number, self.embedder.name, vector.tobytes()) for number, vector in fresh.items()])
-        vectors = [fresh[number] if vector is None else np.frombuffer(vector, np.float32) for number, _, vector in rows]
+        vectors = [fresh[number] if number in fresh else np.frombuffer(vector, np.float32) for number, _, vector in rows]
         return np.array([number for number, _, _ in rows]), np.stack(vectors)
 
     def _keep(self, rows: Sequence[tuple[int, str, bytes]]) -> None:
         """Store vectors, so that they need not be computed again; ignored if the store is read-only."""
         with contextlib.suppress(WriteError), self._connection(writing=True) as database:
-            database.executemany("insert or ignore into vectors values (?, ?, ?)", rows)
+            database.executemany("insert or replace into vectors values (?, ?, ?)", rows)
 
     @contextlib.contextmanager
     def _connection(self, *, writing: bool = False) -> Iterator[sqlite3.Connection]:

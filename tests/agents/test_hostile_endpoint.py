@@ -12,10 +12,11 @@ from pathlib import Path
 import pytest
 
 from articad.agents.calls import Calls
-from articad.agents.live import LiteLLM
+from articad.agents.live import LiteLLM, LiteLLMEmbedder
 from articad.agents.llm import Budget, Request, user
 from articad.agents.replies import parse_object
 from articad.errors import BudgetError, OutputError, TransportError
+from articad.runs.run import canonical_json
 from tests.agents import hostile_endpoint as ways
 from tests.agents.hostile_endpoint import Misbehaviour, completion, hostile, redirects_to, says
 
@@ -187,3 +188,38 @@ def test_after_the_death_of_the_process_that_calls_another_one_is_started() -> N
 def test_a_reply_of_many_brackets_is_refused(text: str) -> None:
     with pytest.raises(OutputError, match=r"nested deeper than 100 levels|not one JSON object"):
         parse_object(text, step="design/1")
+
+
+def test_half_of_a_surrogate_pair_is_replaced_so_that_the_reply_can_be_recorded() -> None:
+    with hostile(says(completion("a\ud83db \N{GRINNING FACE}")[:-1] + b', "system_fingerprint": "\\ud800"}')) as endpoint:
+        reply = LiteLLM("x", api_base=endpoint.address).complete(QUESTION)
+    assert (reply.text, reply.fingerprint) == ("a?b \N{GRINNING FACE}", "?")
+    assert canonical_json(reply.to_json())
+
+
+def test_tokens_of_more_digits_than_can_be_printed_end_a_budget_in_words() -> None:
+    usage = b', "usage": {"prompt_tokens": ' + b"9" * 4300 + b', "completion_tokens": ' + b"9" * 4300 + b', "total_tokens": 1}}'
+    with hostile(says(completion("x")[:-1] + usage)) as endpoint:
+        budget = Budget(LiteLLM("x", api_base=endpoint.address), tokens=10)
+        budget.complete(QUESTION)
+        with pytest.raises(BudgetError, match="tokens is spent"):
+            budget.complete(QUESTION)
+
+
+VECTORS = {
+    "of two sizes": ["[1, 2]", "[1]"],
+    "of no numbers": ["[]", "[]"],
+    "of texts": ['"one"', '"two"'],
+    "of lists": ["[[1]]", "[[2]]"],
+    "not finite": ["[NaN, 1]", "[1, 1]"],
+    "of two million numbers": ["[" + "1," * 2_000_000 + "1]"] * 2,
+}
+
+
+@pytest.mark.parametrize("name", VECTORS)
+def test_vectors_that_are_none_are_refused(name: str) -> None:
+    rows = ",".join(f'{{"object": "embedding", "index": {place}, "embedding": {row}}}' for place, row in enumerate(VECTORS[name]))
+    body = f'{{"object": "list", "model": "m", "data": [{rows}], "usage": {{"prompt_tokens": 1, "total_tokens": 1}}}}'
+    with hostile(says(body.encode())) as endpoint, watched() as more, pytest.raises(TransportError):
+        LiteLLMEmbedder("x", api_base=endpoint.address).embed(["a", "b"])
+    assert more[0] <= MORE_MEMORY

@@ -170,6 +170,26 @@ def test_a_refused_key_names_its_variable_and_shows_nothing_of_it(monkeypatch: p
     assert SECRET not in "".join(traceback.format_exception(caught.value))
 
 
+@pytest.mark.parametrize(
+    "address",
+    [
+        "",
+        "http://[",
+        "http://",
+        "127.0.0.1:8000/v1",
+        "file:///etc/hosts",
+        "http://host:99999/v1",
+        "http://host:0",
+        "http://host/\r\nx: y",
+        "http://a b/",
+    ],
+)
+def test_what_is_no_address_is_refused_before_anything_is_started(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.agents.live.Calls.shared", lambda: pytest.fail("a process is started"))
+    with pytest.raises(TransportError, match="is not the address of an endpoint"):
+        LiteLLM("x", api_base=address)
+
+
 def test_a_missing_key_is_named_before_anything_is_sent() -> None:
     for model, variable in (
         ("gpt-5.2", "OPENAI_API_KEY"),

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import random
+import re
+import time
+
 import pytest
 
+from articad.agents import replies
 from articad.agents.prompts import prompt
 from articad.agents.replies import object_text, parse_object, parse_script
 from articad.errors import OutputError
@@ -71,3 +76,23 @@ def test_a_prompts_blanks_are_filled_once() -> None:
     assert "{{findings}} of {{x}}" in prompt("design_repair", findings="{{findings}} of {{x}}")
     with pytest.raises(KeyError):
         prompt("design_repair")
+
+
+WHOLE_BLOCK = re.compile(r"^[ \t]*```[ \t]*([\w+-]*)[^\n]*\n(.*?)^[ \t]*```[ \t]*$", re.DOTALL | re.MULTILINE)
+"""What a fenced block is; the search takes quadratic time."""
+
+
+def test_fenced_blocks_are_those_that_one_expression_describes() -> None:
+    choice = random.Random(1).choice
+    for _ in range(500):
+        text = "".join(choice(["```", "```py", "``` ", "\n", "\n", " ", "x", "\t```\n", "\r\n"]) for _ in range(20))
+        assert list(replies._fenced(text)) == WHOLE_BLOCK.findall(text)
+
+
+@pytest.mark.parametrize("text", ["```a\n" * 100_000, "```" + "a" * 300_000, "```\n" + " \n" * 300_000])
+def test_a_reply_of_many_fences_takes_linear_time(text: str) -> None:
+    began = time.process_time()
+    for read in (parse_object, parse_script):
+        with pytest.raises(OutputError):
+            read(text, step="s")
+    assert time.process_time() - began < 5

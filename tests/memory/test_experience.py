@@ -208,3 +208,20 @@ def test_a_strangers_line_that_is_no_case_adds_nothing(tmp_path: Path, line: str
     with pytest.raises(ReadError):
         store.import_lines([json.dumps(GOOD), line])
     assert len(store) == 0
+
+
+def test_vectors_of_another_size_are_computed_again(store: ExperienceStore) -> None:
+    store.add(WARDROBE, CLOCK)
+    before = store.like_request("doors", "good")
+    embedder = store.embedder
+
+    class Shorter:
+        """Another model of the same name."""
+
+        name = embedder.name
+
+        def embed(self, texts: Sequence[str]) -> FloatArray:
+            return embedder.embed(texts)[:, :7]
+
+    store.embedder = Shorter()
+    assert {hit.case for hit in store.like_request("doors", "good")} == {hit.case for hit in before}
