@@ -34,7 +34,7 @@ from articad.importers.freecad_document import IDENTITY, FreeCADObject, LinkedDo
 from articad.importers.freecad_edits import Edit, edits
 from articad.importers.freecad_materials import DENSITIES
 from articad.importers.freecad_mesh import read_mesh_kernel
-from articad.importers.reading import Folder, unreadable
+from articad.importers.reading import MAX_NAME, Folder, unreadable
 from articad.importers.records import assembly_of, read_records
 from articad.kernels.archive import BadArchiveError
 from articad.kernels.freecad import BrepReader
@@ -59,7 +59,7 @@ _WRITTEN = {kind: word for word, kind in _TYPES.items()} | {
     JointType.UNIVERSAL: "Ball",
 }  # how articad writes joints: other words are edits
 _CONTAINING = ("Group", "Origin", "_Body", "OriginFeatures")  # links to members, which need not shape what holds them
-_NAMED = re.compile(r"[A-Za-z_][\w ]*?(?=\.)")  # the objects that an expression names
+_NAMED = re.compile(r"(?<![\w ])(?:(?![A-Za-z_])[\w ])*+([A-Za-z_][\w ]*+)(?=\.)")  # the objects that an expression names, in linear time
 _CONTAINERS = ("App::Part", "App::Link", "Mesh::Feature", "Assembly::AssemblyLink", "Assembly::AssemblyObject")
 _LIMITS = {
     JointType.REVOLUTE: ("Angle",),
@@ -1042,6 +1042,6 @@ def _near(now: SE3, recorded: SE3) -> SE3:
 
 
 def _plain(text: str) -> str:
-    """Return a label as a valid name."""
-    name = re.sub(r"[^a-z0-9]+", "_", text.lower()).strip("_")
+    """Return a label, or the beginning of a long one, as a valid name."""
+    name = re.sub(r"[^a-z0-9]+", "_", text[:MAX_NAME].lower()).strip("_")
     return name if name[:1].isalpha() else f"n{name}"

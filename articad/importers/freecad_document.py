@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,10 +20,10 @@ from articad.kernels.archive import Archive, BadArchiveError
 
 MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 256 * 2**20, 384 * 2**20, 20_000
 MAX_FILES = 200  # that one document may link to, directly or not
-MAX_ALL_XML = 128 * 2**20  # bytes of Document.xml in a document and all that it links to
+MAX_ALL_XML = 128 * 2**20  # bytes of Document.xml and GuiDocument.xml in a document and all that it links to
 MAX_ALL_BYTES = 512 * 2**20  # of their files
 MAX_DEPTH = 50  # of groups within groups and links to links
-MAX_MEMBERS = 20_000  # of groups of a document, each counted as often as it is shown
+MAX_MEMBERS = 5_000  # of an assembly, a part or a folder, those of all groups in it, each counted as often as it is shown
 
 IDENTITY = SE3.identity()
 _GROUPS = ("App::Part", "App::DocumentObjectGroup", "Assembly::AssemblyObject", "Assembly::AssemblyLink")
@@ -40,7 +41,7 @@ class FreeCADDocument:
         path: The file.
         types: Type by object.
         items: XML element by object.
-        sizes: Bytes of the file, bytes and elements of its Document.xml.
+        sizes: Bytes of the file, bytes and elements of its Document.xml and GuiDocument.xml.
     """
 
     def __init__(self, path: Path) -> None:
@@ -54,10 +55,20 @@ class FreeCADDocument:
         except BadArchiveError as error:
             raise unreadable(path, "", f"It is not a FreeCAD file: {error}.") from None
         self.root = parse_xml(text, path)
-        self.sizes = (len(content), len(text), sum(1 for _ in self.root.iter()))
+        shown = self._shown_text()
+        self._gui = None if shown is None else parse_xml(shown, path)
+        elements = sum(1 for root in (self.root, self._gui) if root is not None for _ in root.iter())
+        self.sizes = (len(content), len(text) + len(shown or b""), elements)
         self._files: dict[str, tuple[Archive, str]] = {}  # entries of other files
         self._painted: dict[str, str] = {}  # colours of the objects of other files
         self.index()
+
+    def _shown_text(self) -> bytes | None:
+        """Return what a window of FreeCAD stored, or None where there is nothing, or nothing that can be unpacked."""
+        try:
+            return self.archive.read("GuiDocument.xml", MAX_XML_BYTES)
+        except BadArchiveError:
+            return None
 
     def index(self) -> None:
         """Find the objects and their properties in the XML; again after documents were taken."""
@@ -190,13 +201,7 @@ class FreeCADDocument:
     def colors(self) -> dict[str, str]:
         """Return "#rrggbb" by object, for objects whose colour a window of FreeCAD stored."""
         found = dict(self._painted)
-        if "GuiDocument.xml" not in self.archive.names:
-            return found
-        try:
-            root = parse_xml(self.archive.read("GuiDocument.xml", MAX_XML_BYTES), self.path)
-        except BadArchiveError:
-            return found
-        for provider in root.iterfind("ViewProviderData/ViewProvider"):
+        for provider in () if self._gui is None else self._gui.iterfind("ViewProviderData/ViewProvider"):
             rows = {row.get("name"): row for row in provider.iterfind("Properties/Property")}
             kind = self.types.get(provider.get("name", ""), "")
             color = self._override(rows) if kind == "App::Link" else self._shown(rows)
@@ -225,6 +230,16 @@ class FreeCADDocument:
             return _packed_color(str(diffuse)) if count else None
         color = rows["ShapeColor"].find("PropertyColor") if "ShapeColor" in rows else None
         return None if color is None else _packed_color(color.get("value"))
+
+
+def _require_few(shown: Iterator[int], item: FreeCADObject) -> None:
+    """Count one more object of an assembly or a part. Groups that show others twice can show 2⁵⁰ with fifty objects.
+
+    Raises:
+        ReadError: If there are too many.
+    """
+    if next(shown) > MAX_MEMBERS:
+        raise unreadable(item.document.path, item.name, f"With all groups in it, more than {MAX_MEMBERS} objects are shown.")
 
 
 def _packed_color(text: str | None) -> str | None:
@@ -338,18 +353,22 @@ class LinkedDocuments:
 
     def members(self, item: FreeCADObject) -> list[FreeCADObject]:
         """Return the members of a group, those of folders in it included."""
-        found, waiting = [], [(name, 0) for name in item.document.links(item.name, "Group")]
+        found, seen = [], 0
+        waiting = [(name, 0) for name in reversed(item.document.links(item.name, "Group"))]
         while waiting:
-            name, depth = waiting.pop(0)
+            name, depth = waiting.pop()
             if item.document.types.get(name) == "App::DocumentObjectGroup" and depth < MAX_DEPTH:
-                waiting = [(member, depth + 1) for member in item.document.links(name, "Group")] + waiting
+                waiting += [(member, depth + 1) for member in reversed(item.document.links(name, "Group"))]
             else:
                 found.append(FreeCADObject(item.document, name))
-            if len(found) > MAX_MEMBERS:
+            seen += 1
+            if seen + len(waiting) > MAX_MEMBERS:
                 raise unreadable(item.document.path, item.name, f"It has more than {MAX_MEMBERS} members.")
         return found
 
-    def components(self, item: FreeCADObject, T: SE3 = IDENTITY, depth: int = 0) -> Iterator[tuple[FreeCADObject, SE3]]:
+    def components(
+        self, item: FreeCADObject, T: SE3 = IDENTITY, depth: int = 0, shown: Iterator[int] | None = None
+    ) -> Iterator[tuple[FreeCADObject, SE3]]:
         """Yield the members of an assembly, each with the pose of the group that contains it.
 
         FreeCAD's solver moves the members of a flexible sub-assembly one by one, so they are members of the assembly around it.
@@ -358,39 +377,53 @@ class LinkedDocuments:
             item: The assembly.
             T: Pose of the frame of `item`.
             depth: Number of assemblies around it.
+            shown: Counts the members of the outermost assembly; a new one by default.
+
+        Raises:
+            ReadError: If assemblies are nested too deep, or show too many members.
         """
         if depth > MAX_DEPTH:
             raise unreadable(item.document.path, item.name, "Its assemblies are nested too deep.")
+        shown = shown or count()
         for member in self.members(item):
+            _require_few(shown, item)
             flexible = member.type == "Assembly::AssemblyLink" and not member.document.truth(member.name, "Rigid", default=True)
             if flexible and member.document.links(member.name, "Group"):
-                yield from self.components(member, T @ member.placement, depth + 1)
+                yield from self.components(member, T @ member.placement, depth + 1, shown)
             else:
                 yield member, T
 
-    def shapes(self, item: FreeCADObject, T: SE3 = IDENTITY, depth: int = 0) -> Iterator[tuple[FreeCADObject, SE3]]:
+    def shapes(
+        self, item: FreeCADObject, T: SE3 = IDENTITY, depth: int = 0, shown: Iterator[int] | None = None
+    ) -> Iterator[tuple[FreeCADObject, SE3]]:
         """Yield the bodies, solids and meshes of a part, each with the pose of its stored shape in the part's frame.
 
         Args:
             item: The part, or the object that it links to.
             T: Pose of the frame of `item`.
             depth: Number of groups around it.
+            shown: Counts the groups and shapes of the outermost part; a new one by default.
+
+        Raises:
+            ReadError: If groups and links are nested too deep, or show too many shapes.
         """
         if depth > MAX_DEPTH:
             raise unreadable(item.document.path, item.name, "Its groups and links are nested too deep.")
+        shown = shown or count()
+        _require_few(shown, item)
         if item.is_shape or item.type == "Mesh::Feature":
             yield item, T @ item.placement.inverse() if item.is_shape else T  # B-rep is stored in the frame of the object's group
             return
         if item.type in _LINKS:
             target = self.container(item)
             if target != item:
-                yield from self.shapes(target, T, depth + 1)
+                yield from self.shapes(target, T, depth + 1, shown)
             return
         members = [member.name for member in self.members(item)]
         meshes = [name for name in members if item.document.types.get(name) == "Mesh::Feature"]
         for name in [*item.document.results(members), *meshes]:
             member = FreeCADObject(item.document, name)
-            yield from self.shapes(member, T @ member.placement, depth + 1)
+            yield from self.shapes(member, T @ member.placement, depth + 1, shown)
 
     def reference(self, item: FreeCADObject, key: str) -> list[FreeCADObject]:
         """Return the objects along a reference whose placements lead to its frame, starting at the one that states it.
@@ -406,6 +439,8 @@ class LinkedDocuments:
         tail = (sub.get("value") if sub is not None else link.get("sub")) or ""
         document = self._document(item, link.get("file") or "")
         steps: list[FreeCADObject] = []
+        if tail.count(".") > MAX_DEPTH:
+            raise unreadable(item.document.path, item.name, f"A reference leads through more than {MAX_DEPTH} objects.")
         for name in (link.get("name") or "", *tail.split(".")[:-1]):
             if name not in document.items:
                 continue
@@ -436,7 +471,7 @@ class LinkedDocuments:
             if any(finding.code == "E_UNSAFE_PATH" for finding in error.findings):
                 raise
             raise unreadable(
-                item.document.path, item.name, f"It links to {file!r}, which is not below {folder.root}. Put the file there."
+                item.document.path, item.name, f"It links to {file[:200]!r}, which is not below {folder.root}. Put the file there."
             ) from None
         if path not in self._read:
             if len(self._read) >= MAX_FILES:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -28,7 +29,11 @@ MAX_ATTRIBUTES = 200  # of one element; the parser compares each with each
 MAX_ATTRIBUTE = 16 << 20  # characters of one attribute: the vertices of a mesh in MJCF
 MAX_URDF_ATTRIBUTE = 1 << 16  # characters; URDF has names and at most six numbers in one
 MAX_DEPTH = 50_000  # nesting of elements: a chain of MAX_LINKS bodies, twice
-_FEW = 20_000  # equals signs up to which a file is parsed without a prior count: half a second at worst
+MAX_NAME = 1000  # characters of a name: each object below it repeats it, and so do findings
+MAX_FOLDERS = 32  # in the name of a file; each is looked up
+_DECLARATION = 1000  # bytes in which an XML declaration ends
+_SEVERAL_BYTES = frozenset({"gb18030", "gbk", "gb2312", "hz", "big5", "big5hkscs", "cp932", "cp949", "shift_jis", "euc_jp", "euc_kr"})
+"""Encodings with characters of several bytes, which the parser that counts does not know; Python's names."""
 MM_PER_M = 1000.0
 ELSEWHERE = "Put the mesh where the file names it, or name a folder above both as the root (--root)."
 _REMEDY = {
@@ -68,7 +73,7 @@ def parse_xml(content: bytes, path: Path) -> Any:
     # huge_tree removes the depth limit of 256, which a chain of bodies exceeds; without entities this is not a risk
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True, remove_comments=True, remove_pis=True)
     # widespread errors that other readers forgive: version 0.0, leading blank lines, a zero byte at the end
-    content = re.sub(rb"^\s*<\?xml[^>]*?version\s*=\s*[\"']0\.\d[\"'][^>]*\?>", b"", content.strip(b"\0\r\n\t "))
+    content = _in_a_known_encoding(content.strip(b"\0\r\n\t "), path)
     _require_bounded(content, path)
     try:
         root = etree.fromstring(content, parser)
@@ -93,18 +98,38 @@ def _without_default_namespace(root: Any) -> Any:
     return root
 
 
+def _in_a_known_encoding(content: bytes, path: Path) -> bytes:
+    """Return XML text in an encoding that both parsers know, so that one counts what the other builds; without a version 0.x.
+
+    Raises:
+        ReadError: If it is not in the encoding that it states.
+    """
+    declaration = content[: content.find(b"?>", 0, _DECLARATION) + 2] if content.startswith(b"<?xml") else b""
+    stated = re.search(rb"encoding\s*=\s*[\"']([\w.-]+)[\"']", declaration)
+    try:
+        encoding = codecs.lookup(stated[1].decode()).name if stated else ""
+    except LookupError:
+        encoding = ""  # the parser that counts refuses it
+    if encoding in _SEVERAL_BYTES or (encoding == "utf-8" and stated and stated[1].lower() != b"utf-8"):  # utf8 is a name of it, too
+        try:
+            return content[len(declaration) :].decode(encoding).encode()
+        except UnicodeError as error:
+            raise unreadable(path, "line 1", f"It is not XML: {error}.") from None
+    return content[len(declaration) :] if re.search(rb"version\s*=\s*[\"']0\.\d[\"']", declaration) else content
+
+
 def _require_bounded(content: bytes, path: Path) -> None:
     """Count elements, attributes and levels with a parser that builds nothing, before the text reaches the one that builds a tree.
 
+    What the first does not read is not given to the second, which knows more encodings: a text could hide its size in them.
+
     Raises:
-        ReadError: If there are too many.
+        ReadError: If there are too many, or it is not XML.
     """
-    counter = _Counter(path)
     try:
-        counter.count(content)
+        _Counter(path).count(content)
     except (expat.ExpatError, ValueError, LookupError) as error:  # the latter two: unknown encodings
-        if content.count(b"=") > _FEW:  # a text that only the other parser would accept, in unlimited time
-            raise unreadable(path, f"line {getattr(error, 'lineno', 1)}", f"It is not XML: {error}.") from None
+        raise unreadable(path, f"line {getattr(error, 'lineno', 1)}", f"It is not XML: {error}.") from None
 
 
 class _Counter:
@@ -127,6 +152,10 @@ class _Counter:
         self._elements += 1
         if attributes and (length := max(map(len, attributes))) > self._longest:
             self._refuse(f"An attribute has {length} characters; the maximum is {self._longest}.")
+        if "name" in attributes and any(
+            key == "name" and len(value) > MAX_NAME for key, value in zip(attributes[::2], attributes[1::2], strict=True)
+        ):
+            self._refuse(f"A name has more than {MAX_NAME} characters.")
         self._depth += 1
         if len(attributes) > 2 * MAX_ATTRIBUTES:
             self._refuse(f"An element has {len(attributes) // 2} attributes; the maximum is {MAX_ATTRIBUTES}.")
@@ -143,6 +172,11 @@ class _Counter:
 
     def _refuse(self, reason: str) -> None:
         raise unreadable(self._path, f"line {self._parser.CurrentLineNumber}", reason)
+
+
+def is_file_name(name: str) -> bool:
+    """Return whether a text may name a file: neither empty nor long, without a zero byte, in few folders."""
+    return bool(name) and len(name) <= MAX_NAME and "\0" not in name and name.count("/") <= MAX_FOLDERS
 
 
 @dataclass
@@ -200,8 +234,8 @@ class Folder:
 
     def _candidates(self, name: str) -> list[tuple[Path, Path]]:
         """Return the places where a named file may be, and the folder that confines each."""
-        if "\0" in name or not name:
-            raise unreadable(repr(name), "", "This is not a file name.")
+        if not is_file_name(name):
+            raise unreadable(repr(name[:200]), "", "This is not a file name.")
         scheme, _, path = name.partition("://")
         if scheme in {"package", "model"}:
             package, _, rest = path.partition("/")

@@ -31,6 +31,7 @@ from articad.plan.resolve import Fit, Material, Waiver
 from articad.texts import SPOILED, spoiled
 
 VERSION = 1
+MAX_VALUES = 4_000_000  # of all records of a file; an empty list takes twenty times its place in the text
 PRIMITIVES = {"box": 3, "cylinder": 2, "sphere": 1, "capsule": 2, "ellipsoid": 3}  # numbers of their sizes
 
 Record = dict[str, Any]
@@ -43,9 +44,11 @@ def read_records(texts: Iterable[str], path: Path) -> list[Record]:
     """Return the records in a file.
 
     Raises:
-        ReadError: If one is not a JSON object with a kind, or of a later version.
+        ReadError: If one is not a JSON object with a kind, or of a later version, or there are too many values.
     """
-    records = []
+    records, texts = [], list(texts)
+    if (values := sum(text.count(mark) for text in texts for mark in "[{,")) > MAX_VALUES:
+        raise unreadable(path, "articad metadata", f"The records have {values} values; the maximum is {MAX_VALUES}.")
     for text in texts:
         try:
             record = json.loads(text, parse_constant=_refused_number)

@@ -16,7 +16,7 @@ from typing import Any
 from articad.errors import ReadError
 from articad.files import read_file
 from articad.geometry.mesh_files import MAX_FILE_BYTES
-from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
+from articad.importers.reading import MAX_ELEMENTS, MAX_LINKS, Folder, is_file_name, read_xml, unreadable
 
 MAX_FILES = 100  # largest number of files that include each other
 MAX_COPIES = 1000  # largest number of copies by <replicate>, <composite> and the like, nested ones multiplied
@@ -64,6 +64,7 @@ class _Closure:
         self._copied = 0  # elements, counted once per copy
         self._named: set[Path] = set()
         self._bytes = 0  # of the named files
+        self._elements = 0  # of all files
         self._points = 0.0  # of textures and height fields without a file
 
     def follow(self, path: Path) -> None:
@@ -88,9 +89,7 @@ class _Closure:
         if len(self._seen) >= MAX_FILES:
             raise unreadable(path, "", f"More than {MAX_FILES} files include each other.")
         self._seen.append(path)
-        document = read_xml(path)
-        if (bodies := sum(1 for _ in document.iter("body"))) > MAX_LINKS:
-            raise unreadable(path, "", f"It has {bodies} bodies; the maximum is {MAX_LINKS}.")
+        document = self._document(path)
         copies = _copies(document, path, times)
         self._copied += sum(copies.values())
         if self._copied > MAX_COPIED:
@@ -112,6 +111,16 @@ class _Closure:
         for element in document.iter("include"):
             self._include(element, path, here, named, folders, models, copies.get(element, times))
 
+    def _document(self, path: Path) -> Any:
+        """Return the root element of a file, whose elements and bodies are few."""
+        document = read_xml(path)
+        self._elements += sum(1 for _ in document.iter())
+        if self._elements > MAX_ELEMENTS:
+            raise unreadable(path, "", f"With this file the model has {self._elements} elements; the maximum is {MAX_ELEMENTS}.")
+        if (bodies := sum(1 for _ in document.iter("body"))) > MAX_LINKS:
+            raise unreadable(path, "", f"It has {bodies} bodies; the maximum is {MAX_LINKS}.")
+        return document
+
     def _include(self, element: Any, path: Path, here: Path, named: Named, folders: dict[str, None], models: Named, times: int) -> None:
         """Follow an include; engines resolve its name relative to the file or to the model, so both are followed."""
         name = element.get("file", "")
@@ -125,6 +134,8 @@ class _Closure:
     def _checked(self, base: Path, name: str, file: Path, line: int) -> Path:
         """Return the file for a name, which lies inside the root."""
         where = f"line {line}"
+        if name and not is_file_name(name):
+            raise unreadable(file, where, f"{name[:200]!r} is not a file name.")
         if name.startswith("package://"):
             try:
                 target = self._folder.find(name)

@@ -23,7 +23,17 @@ from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
 from articad.geometry.shapes import primitive_mesh
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
-from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
+from articad.importers.reading import (
+    MAX_LINKS,
+    MAX_NAME,
+    MAX_SHAPES,
+    MAX_XML_BYTES,
+    MM_PER_M,
+    Folder,
+    color_text,
+    read_xml,
+    unreadable,
+)
 from articad.importers.records import unedited
 from articad.importers.sdf_frames import MODEL, WORLD, Scope, numbers_of, pose_of
 from articad.importers.sdf_kept import kept_of
@@ -34,6 +44,8 @@ __all__ = ["read_sdf"]
 
 MAX_DEPTH: Final = 20  # of nested models
 MAX_FILES: Final = 200  # largest number of included files
+MAX_ELEMENTS: Final = 500_000  # of a file and all that it includes, each counted as often as it is included
+MAX_ALL_XML: Final = 2 * MAX_XML_BYTES  # the same for bytes
 NO_BOUND: Final = 1e16  # SDFormat's value for a bound, an effort or a velocity that is not stated
 _ACROSS: Final = 1e-9  # largest deviation of the axes of a universal joint from a right angle
 _NAMED_IN_MODEL: Final = ("link", "joint", "frame", "model", "include")
@@ -94,10 +106,12 @@ class _Reader:
         self.raw = RawModel(path.stem, WORLD)
         self.joints: list[tuple[Scope, Any]] = []
         self.links: dict[str, tuple[Scope, Any]] = {}
-        self.files = 0
+        self.leaders: dict[str, Any] = {}  # the joints by their full names
+        self.files = self.bytes = self.elements = 0
 
     def model(self, document: Any) -> RawModel:
         """Return the content of the document."""
+        self._count(document, self.path)
         version = _version(document, self.path)
         worlds, models = document.findall("world"), document.findall("model")
         if len(worlds) + len(models) != 1:
@@ -123,6 +137,14 @@ class _Reader:
             self._joint(scope, element)
         self._hold()
         return self.raw
+
+    def _count(self, document: Any, path: Path) -> None:
+        """Add a file to those that were read, and refuse it if they are too large together."""
+        self.bytes += path.stat().st_size
+        self.elements += sum(1 for _ in document.iter())
+        for number, most, what in ((self.bytes, MAX_ALL_XML, "bytes of XML"), (self.elements, MAX_ELEMENTS, "elements")):
+            if number > most:
+                raise unreadable(path, "", f"With the files that are included there are {number} {what}; the maximum is {most}.")
 
     # ------------------------------------------------------------------ models
 
@@ -150,6 +172,8 @@ class _Reader:
             if not name:
                 raise scope.fault(element, "A <model> has no name.")
             static = scope.static or _flag(inner, "static") or _flag(place, "static")
+            if len(scope.prefix) + len(name) > MAX_NAME:
+                raise scope.fault(element, f"The name of a model, with those of the models around it, has more than {MAX_NAME} characters.")
             own = Scope(inner, path, f"{scope.prefix}{name}::" if prefix is None else prefix, scope, static, version)
             if name in scope.models:
                 raise scope.fault(element, f"Two models have the name {name!r}.")
@@ -188,6 +212,7 @@ class _Reader:
             hint = "Put it below the folder of the file, or name a folder above both as the root (--root)."
             self.raw.findings.append(Finding(code="W_IMPORT_DROPPED", where="model", message=message, hint=hint))
             return None
+        self._count(document, path)
         inner = document.find("model")
         if inner is None:
             raise unreadable(path, f"line {document.sourceline}", "The included file has no model.")
@@ -210,11 +235,20 @@ class _Reader:
         if not listed:
             raise unreadable(config, "", "It lists no SDFormat file.")
         return Folder(self.folder.root, config.parent).find(
-            max(listed, key=lambda one: [int(n) for n in one[0].split(".") if n.isdigit()])[1]
+            max(listed, key=lambda one: [int(n) for n in one[0].split(".") if n.isdecimal() and len(n) < 10])[1]
         )
+
+    def _require_bounded(self, scope: Scope) -> None:
+        """Refuse a model with which there are too many joints, or with a link that has too many shapes."""
+        joints = len(self.joints) + len(scope.element.findall("joint"))
+        shapes = max((len(link) for link in scope.element.iterfind("link")), default=0)
+        for number, most, what in ((joints, MAX_LINKS, "joints"), (shapes, MAX_SHAPES, "elements in one link")):
+            if number > most:
+                raise unreadable(scope.path, "", f"It has {number} {what}; the maximum is {most}.")
 
     def _frames(self, scope: Scope) -> None:
         """Add the links, joints and frames of a model, after those of its nested models."""
+        self._require_bounded(scope)
         for element in scope.element:
             if element.tag in _NAMED_IN_MODEL and element.tag != "include" and not element.get("name"):
                 raise scope.fault(element, f"A <{element.tag}> has no name.")
@@ -234,6 +268,7 @@ class _Reader:
             if scope.version >= (1, 7) or name not in links:  # before 1.7 a joint could have a link's name, and nothing referred to it
                 scope.add(element, name, relative_to or child, pose, child)
             self.joints.append((scope, element))
+            self.leaders.setdefault(scope.prefix + name, element)
         for element in scope.element.iterfind("frame"):
             pose, relative_to = pose_of(element, scope)
             attached_to = element.get("attached_to") or MODEL
@@ -291,7 +326,7 @@ class _Reader:
             self.raw.kept += kept_of(element, f"link/{tag}", f"{where}.{tag}s.{place}")
             place += 1
             diffuse = element.find("material/diffuse")
-            rgba = None if diffuse is None else [float(word) for word in (diffuse.text or "").split() if _is_number(word)]
+            rgba = None if diffuse is None else [float(word) for word in (diffuse.text or "").split(None, 4) if _is_number(word)]
             if rgba is not None and len(rgba) == 4 and rgba[3] != 1:
                 self.raw.kept.append(Kept("sdf", where, f"transparency: alpha {rgba[3]:g} of {name!r}"))
             color = color_text(rgba) if rgba and len(rgba) >= 3 else None
@@ -461,7 +496,7 @@ class _Reader:
         if mimic is None:
             return
         leader = scope.prefix + (mimic.get("joint") or "")
-        other = next((element for where, element in self.joints if where.prefix + element.get("name") == leader), None)
+        other = self.leaders.get(leader)
         if other is not None and other.get("type") == "revolute2":
             leader = f"{leader}__{2 if mimic.get('axis') == 'axis2' else 1}"
         mine, its = (MM_PER_M if yes else 1.0 for yes in (slides, other is not None and other.get("type") == "prismatic"))

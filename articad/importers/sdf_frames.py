@@ -151,7 +151,7 @@ def numbers_of(element: Any, count: int, scope: Scope) -> list[float]:
         ReadError: If they are not `count` finite numbers.
     """
     try:
-        numbers = [float(word) for word in (element.text or "").split()]
+        numbers = [float(word) for word in (element.text or "").split(None, count)]
     except ValueError:
         numbers = []
     if len(numbers) != count or not all(map(math.isfinite, numbers)) or any(abs(number) > LARGEST_MM for number in numbers):

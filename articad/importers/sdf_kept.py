@@ -119,6 +119,7 @@ def kept_of(element: Any, key: str, where: str, above: tuple[str, ...] = ()) -> 
 
 
 _LISTED: Final = frozenset({"link", "joint", "link/visual", "link/collision", "model", "include", "frame"})  # each is read separately
+_SHOWN: Final = 40  # characters of a text that is shown
 _REPLACED: Final = ("link/inertial", "link/visual/geometry", "link/collision/geometry")  # written anew, in another form
 
 
@@ -139,5 +140,5 @@ def _text(element: Any, above: tuple[str, ...]) -> str:
 
 def _value(element: Any) -> str:
     """Return ` 0.5` for an element that contains only a short text."""
-    text = " ".join((element.text or "").split())
-    return f" {text}" if text and not len(element) and len(text) <= 40 else ""
+    text = " ".join((element.text or "").split(None, _SHOWN))
+    return f" {text}" if text and not len(element) and len(text) <= _SHOWN else ""

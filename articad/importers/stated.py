@@ -216,7 +216,7 @@ def _only(element: Any, tag: str) -> Any:
 
 
 def _numbers(text: str | None, count: int | None = None) -> list[float]:
-    values = [float(word) for word in (text or "").split()]
+    values = [float(word) for word in (text or "").split(None, -1 if count is None else count)]
     if (count is not None and len(values) != count) or not all(map(math.isfinite, values)):
         raise ValueError("not the numbers that belong here")
     return values

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import base64
+import contextlib
+import time
+import tracemalloc
 import zipfile
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,8 +15,13 @@ import pytest
 
 from articad.auditing.examine import audit_file
 from articad.errors import ReadError
+from articad.export.freecad_content import unpacked_content
+from articad.importers import freecad
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
+from articad.importers.reading import Folder
+from articad.importers.referenced_files import require_closed
+from articad.importers.sdf import read_sdf
 from articad.importers.urdf import read_urdf
 from tests.hostile_files import archive, listing_document, robot
 
@@ -34,7 +44,7 @@ XMLS = {
     "attributes": (f"<robot {MANY}/>", "30000 attributes"),
     "attributes, one twice": (f'<robot {MANY} a1="2"/>', "duplicate attribute"),
     "attributes with brackets": ("<robot " + MANY.replace('"1"', '">"') + "/>", "30000 attributes"),
-    "attributes in an encoding of several bytes": (f'<?xml version="1.0" encoding="gb18030"?><robot {MANY}/>', "multi-byte"),
+    "attributes in an encoding of several bytes": (f'<?xml version="1.0" encoding="gb18030"?><robot {MANY}/>', "30000 attributes"),
     "attributes in no encoding": (f'<?xml version="1.0" encoding="none"?><robot {MANY}/>', "unknown encoding"),
     "levels": ("<a>" * 60_000, "nested deeper than 50000"),
     "elements": ("<a>" + "<b/>" * 1_000_001 + "</a>", "more than 1000000 elements"),
@@ -50,6 +60,126 @@ def test_xml_is_counted_before_a_tree_is_built(name: str, tmp_path: Path) -> Non
     path.write_text(text)
     with pytest.raises(ReadError, match=reason):
         read_urdf(path)
+
+
+MORE = "more than 10 elements"
+
+
+@pytest.mark.usefixtures("idle")
+@pytest.mark.parametrize(
+    ("encoding", "reason"),
+    [
+        ("utf-8", MORE),
+        ("gb18030", MORE),
+        ("euc-jp", MORE),
+        ("utf-7", "not XML"),
+        ("utf-32", "not XML"),
+        ("cp037", "not XML"),
+        ("zlib", "not XML"),
+    ],
+)
+def test_elements_are_counted_in_every_encoding(encoding: str, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.importers.reading.MAX_ELEMENTS", 10)
+    text = f'<?xml version="1.0" encoding="{encoding}"?><robot>' + "<a/>" * 10 + "</robot>"
+    path = tmp_path / "a.urdf"
+    path.write_bytes(text.encode(encoding if encoding in {"utf-32", "cp037"} else "ascii"))
+    with pytest.raises(ReadError, match=reason):
+        read_urdf(path)
+
+
+@pytest.mark.usefixtures("idle")
+def test_a_declaration_without_end_takes_linear_time(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_text("<?xml " + 'version="0.1" ' * 300_000)
+    began = time.process_time()
+    with pytest.raises(ReadError, match="not XML"):
+        read_urdf(path)
+    assert time.process_time() - began < 2
+
+
+@pytest.mark.usefixtures("idle")
+def test_a_name_is_short(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_text(f'<robot name="r"><link name="{"a" * 1001}"/></robot>')
+    with pytest.raises(ReadError, match="more than 1000 characters"):
+        read_urdf(path)
+
+
+@pytest.mark.parametrize("name", ["a/" * 33 + "b.stl", "a" * 1001, "../" * 40 + "etc/passwd"])
+def test_a_long_name_of_a_file_is_not_looked_up(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = Folder.of(tmp_path / "a.urdf", None)
+    monkeypatch.setattr(Path, "resolve", never)
+    with pytest.raises(ReadError, match="not a file name"):
+        folder.find(name)
+    (tmp_path / "a.urdf").write_text(
+        f'<robot name="r"><link name="a"><visual><geometry><mesh filename="{name}"/></geometry></visual></link></robot>'
+    )
+    monkeypatch.undo()
+    with pytest.raises(ReadError, match="not a file name"):
+        require_closed(tmp_path / "a.urdf")
+
+
+def test_included_files_are_counted_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.importers.referenced_files.MAX_ELEMENTS", 10)
+    for number in range(3):
+        (tmp_path / f"{number}.urdf").write_text(robot("<a/>" * 4))
+    (tmp_path / "a.urdf").write_text(robot("".join(f'<include file="{number}.urdf"/>' for number in range(3))))
+    with pytest.raises(ReadError, match="14 elements; the maximum is 10"):
+        require_closed(tmp_path / "a.urdf")
+
+
+SDF = '<sdf version="1.9"><world name="w">{}</world></sdf>'
+MODEL = '<model name="{}"><link name="a">{}</link></model>'
+
+
+@pytest.mark.parametrize(
+    ("bound", "most", "inside", "reason"),
+    [
+        ("MAX_ELEMENTS", 15, "<include><uri>b.sdf</uri></include><include><uri>b.sdf</uri><name>c</name></include>", "21 elements; the maximum"),
+        ("MAX_ALL_XML", 900, "<include><uri>b.sdf</uri></include><include><uri>b.sdf</uri><name>c</name></include>", "bytes of XML; the"),
+        ("MAX_LINKS", 3, MODEL.format("m", "") + '<joint name="j{0}" type="fixed"><parent>world</parent><child>m::a</child></joint>' * 4, "joints"),
+        ("MAX_SHAPES", 3, MODEL.format("m", "<visual/>" * 4), "4 elements in one link; the maximum is 3"),
+        ("MAX_NAME", 5, MODEL.format("z", "") + f'<model name="aaa">{MODEL.format("bb", "")}</model>', "more than 5 characters"),
+    ],
+)  # fmt: skip
+def test_a_world_is_counted_before_its_frames_are_placed(
+    bound: str, most: int, inside: str, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(f"articad.importers.sdf.{bound}", most)
+    (tmp_path / "b.sdf").write_text(f'<sdf version="1.9">{MODEL.format("b", "<visual/>" * 4)}</sdf>' + " " * 400)
+    for number in range(4):
+        inside = inside.replace("j{0}", f"j{number}", 1)
+    (tmp_path / "a.sdf").write_text(SDF.format(inside))
+    with pytest.raises(ReadError, match=reason):
+        read_sdf(tmp_path / "a.sdf")
+
+
+@pytest.mark.parametrize("version", ["1.²", "9" * 5000, "1.x", ""])
+def test_a_strange_version_in_the_list_of_a_model_is_the_least(version: str, tmp_path: Path) -> None:
+    (tmp_path / "m").mkdir()
+    rows = f'<sdf version="{version}">old.sdf</sdf><sdf version="1.2">new.sdf</sdf>'
+    (tmp_path / "m/model.config").write_text(f"<model>{rows}</model>")
+    (tmp_path / "m/new.sdf").write_text('<sdf version="1.9"><model name="m"><link name="a"/></model></sdf>')
+    (tmp_path / "a.sdf").write_text(SDF.format("<include><uri>model://m</uri></include>"))
+    assert not read_sdf(tmp_path / "a.sdf").findings
+
+
+@pytest.mark.parametrize("number", ["pose", "plugin", "diffuse"])
+def test_no_list_is_made_of_a_text_of_many_words(number: str, tmp_path: Path) -> None:
+    """A word in a list takes 60 bytes, twenty times its place in the file."""
+    words = "11 " * 1_000_000
+    inside = {"pose": f"<pose>{words}</pose>", "plugin": f"<plugin>{words}</plugin>"}.get(
+        number,
+        f"<visual name='v'><geometry><box/></geometry><material><diffuse>{words}</diffuse></material></visual>",
+    )
+    (tmp_path / "a.sdf").write_text(f'<sdf version="1.9"><model name="m"><link name="a">{inside}</link></model></sdf>')
+    tracemalloc.start()
+    try:
+        with contextlib.suppress(ReadError):
+            read_sdf(tmp_path / "a.sdf")
+        assert tracemalloc.get_traced_memory()[1] < 40e6
+    finally:
+        tracemalloc.stop()
 
 
 def test_an_encoding_of_several_bytes_is_read(tmp_path: Path) -> None:
@@ -154,6 +284,71 @@ def test_a_few_copies_are_read(tmp_path: Path) -> None:
     path = tmp_path / "a.xml"
     path.write_text(WORLD.format(f'<replicate count="5" offset="1 0 0"><body><joint/>{GEOM}</body></replicate>'))
     assert len(read_mjcf(path).parts) == 6
+
+
+def with_objects(path: Path, objects: dict[str, tuple[str, str]], shown: bytes = b"<Document/>") -> Path:
+    """Write a document of objects with types and properties, of which the part P is grounded."""
+    objects = {"P": ("App::Part", ""), "G": ("App::FeaturePython", held("ObjectToGround", "P"))} | objects
+    rows = "".join(f'<Object name="{name}" type="{kind}"/>' for name, (kind, _) in objects.items())
+    data = "".join(f'<Object name="{name}"><Properties>{inside}</Properties></Object>' for name, (_, inside) in objects.items())
+    text = f"<Document><Objects>{rows}</Objects><ObjectData>{data}</ObjectData></Document>"
+    path.write_bytes(archive(Document_xml=text.encode(), GuiDocument_xml=shown))
+    return path
+
+
+def held(key: str, *names: str) -> str:
+    return f'<Property name="{key}"><LinkList>{"".join(f"<Link value={name!r}/>" for name in names)}</LinkList></Property>'
+
+
+FLEXIBLE = '<Property name="Rigid"><Bool value="false"/></Property>'
+
+
+@pytest.mark.parametrize(
+    ("kind", "more", "last"),
+    [
+        ("Assembly::AssemblyLink", FLEXIBLE, "App::Part"),
+        ("App::DocumentObjectGroup", "", "App::DocumentObjectGroup"),
+        ("App::Part", "", "App::Part"),
+    ],
+)
+def test_groups_that_show_others_twice_are_counted(kind: str, more: str, last: str, tmp_path: Path) -> None:
+    groups = {f"x{n}": (kind, more + held("Group", f"x{n + 1}", f"x{n + 1}")) for n in range(14)} | {"x14": (last, "")}
+    path = with_objects(tmp_path / "a.FCStd", {"A": ("Assembly::AssemblyObject", held("Group", "x0", "P", "G"))} | groups)
+    with pytest.raises(ReadError, match=r"more than 5000"):
+        read_freecad(path)
+
+
+def test_a_reference_leads_through_few_objects(tmp_path: Path) -> None:
+    sides = "".join(
+        f'<Property name="Reference{side}"><XLink file="" name="P"><Sub value="{"P." * 51}"/></XLink></Property>' for side in (1, 2)
+    )
+    kind = '<Property name="JointType"><Integer value="0"/><Enum value="Fixed"/></Property>'
+    objects = {"A": ("Assembly::AssemblyObject", held("Group", "P", "G", "J")), "J": ("App::FeaturePython", kind + sides)}
+    with pytest.raises(ReadError, match="through more than 50 objects"):
+        read_freecad(with_objects(tmp_path / "a.FCStd", objects))
+
+
+def test_what_a_window_stored_counts_with_the_document(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.importers.freecad_document.MAX_ELEMENTS", 1000)
+    path = with_objects(tmp_path / "a.FCStd", {}, b"<Document>" + b"<a/>" * 1000 + b"</Document>")
+    with pytest.raises(ReadError, match="elements; the maximum is 1000"):
+        read_freecad(path)
+
+
+def test_values_of_records_are_counted_before_they_are_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.importers.records.json.loads", never)
+    (tmp_path / "a.urdf").write_text(robot('<link name="a"/><articad>{"kind": "part", "x": [' + "[]," * 2_000_001 + "[]]}</articad>"))
+    with pytest.raises(ReadError, match="4000006 values; the maximum is 4000000"):
+        read_urdf(tmp_path / "a.urdf")
+    packed = base64.b64encode(zlib.compress(b'{"a": [' + b"{}," * 2_000_001 + b"{}]}")).decode()
+    assert unpacked_content(packed) is None
+
+
+def test_names_in_an_expression_are_found_in_linear_time() -> None:
+    assert freecad._NAMED.findall("3 mm * Long name.x + 2a.b - \u00e9c.d + Last") == ["Long name", "a", "c"]
+    began = time.process_time()
+    assert not freecad._NAMED.findall("a" * 300_000 + " " * 300_000)
+    assert time.process_time() - began < 2
 
 
 def stored(path: Path) -> None:
