@@ -34,9 +34,10 @@ from articad.geometry.mesh import TriMesh, merged
 MAX_FILE_BYTES = 128 << 20  # binary STL of MAX_TRIANGLES has 50 MB
 MAX_TRIANGLES = 1_000_000  # of one file, placed copies included; MuJoCo takes 200,000
 MAX_WORDS = 8_000_000  # of a text format: 380,000 triangles of a text STL, a million of an OBJ with half a million vertices
+MAX_DAE_WORDS = 16_000_000  # of a DAE: a million triangles whose corners have a normal and a place in a texture each
 MAX_NODES = 10_000  # placed shapes of a scene
 MAX_LIBRARIES = 100  # of materials, that an OBJ names and that are looked for
-MAX_MARKS = 2_000_000  # brackets and commas of the JSON in a glTF
+MAX_MARKS = 2_000_000  # brackets and commas of the JSON in a glTF, tags of a DAE
 STL_HEADER = b"articad binary STL, mm".ljust(80, b" ")  # must not begin with "solid", or readers take it for text
 _OBJ_HEADER = b"# articad, mm\n"
 MADE_BY_ARTICAD = (STL_HEADER, _OBJ_HEADER)  # beginnings of the meshes that articad writes
@@ -354,7 +355,7 @@ def _read_with_trimesh(path: Path, content: bytes) -> TriMesh:
     _require_whole(path, kind, content)
     unit = 1.0
     if kind == "dae":
-        unit, content = _unit_of_dae(content), _bounded_dae(path, _DAE_LOOKS.sub(b"", content))
+        unit, content = _bounded_dae(path, content)
     elif kind in {"glb", "gltf"}:
         _require_bounded_gltf(path, content)
     elif content.partition(b"end_header")[0].find(b"ascii") >= 0:
@@ -370,21 +371,21 @@ def _read_with_trimesh(path: Path, content: bytes) -> TriMesh:
     return merged(meshes).welded()
 
 
-_DAE_LOOKS = re.compile(rb"<(bind_material|library_materials|library_effects|library_images)\b[^>]*>.*?</\1>", re.DOTALL)
+_DAE_LOOKS = ("{*}bind_material", "{*}library_materials", "{*}library_effects", "{*}library_images")
 """DAE elements about appearance: a missing material would make its mesh unreadable."""
 
 
-def _unit_of_dae(content: bytes) -> float:
+def _unit_of_dae(root: Any) -> float:
     """Return the size of one unit of a DAE in metres: `<asset><unit meter="…"/>`, 1 if none is stated."""
-    match = re.search(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([^\"'\s]+)", content[: content.find(b"</asset>") + 1 or None])
-    unit = float(match[1]) if match else 1.0
+    stated = root.find("{*}asset/{*}unit[@meter]")
+    unit = 1.0 if stated is None else float(stated.get("meter"))
     if not 0 < unit < math.inf:
         raise ValueError(f"the unit of {unit} m is not a valid length")
     return unit
 
 
-def _bounded_dae(path: Path, content: bytes) -> bytes:
-    """Return a DAE as UTF-8 without a document type, whose nodes place few shapes.
+def _bounded_dae(path: Path, content: bytes) -> tuple[float, bytes]:
+    """Return the unit of a DAE, and its text as UTF-8 without a document type and appearances, whose nodes place few shapes.
 
     Nodes may place other nodes, and those others again: thirty lines can place 2³⁰ shapes. The number of visits of a node's shapes is
     the sum over the nodes that it places, counted once for each node.
@@ -392,10 +393,15 @@ def _bounded_dae(path: Path, content: bytes) -> bytes:
     Raises:
         ReadError: If nodes place themselves, or more than `MAX_NODES` shapes in all.
     """
+    _require_few(path, content.count(b"<"), MAX_MARKS, "tags")
+    _require_few(path, _words(content), MAX_DAE_WORDS, "words")
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
     root = etree.fromstring(content, parser)
     if root.getroottree().docinfo.internalDTD is not None:
         raise _unreadable(path, "line 1", "a DAE must be plain XML, without entities and not compressed")
+    for look in list(root.iter(*_DAE_LOOKS)):
+        if look.getparent() is not None:
+            look.getparent().remove(look)
     nodes = {node.get("id"): node for node in root.iter("{*}node") if node.get("id")}
     counts: dict[Any, float] = {}
     stack = [(node, False) for node in root.iter("{*}node")]
@@ -416,7 +422,7 @@ def _bounded_dae(path: Path, content: bytes) -> bytes:
         opened.add(node)
         stack.append((node, True))
         stack += [(one, False) for one in below]
-    return bytes(etree.tostring(root, encoding="utf-8"))
+    return _unit_of_dae(root), bytes(etree.tostring(root, encoding="utf-8"))
 
 
 def _require_bounded_gltf(path: Path, content: bytes) -> None:
@@ -437,7 +443,7 @@ def _require_bounded_gltf(path: Path, content: bytes) -> None:
             corner = primitive.get("indices", primitive.get("attributes", {}).get("POSITION"))
             corners += max(uses[number], 1) * (accessors[corner]["count"] if corner is not None else 0)
     _require_few(path, corners / 3, MAX_TRIANGLES, "triangles")
-    _require_few(path, sum(accessor["count"] for accessor in accessors), 12 * MAX_TRIANGLES, "values")
+    _require_few(path, sum(abs(accessor["count"]) for accessor in accessors), 12 * MAX_TRIANGLES, "values")
 
 
 def _words(content: bytes) -> int:
@@ -451,7 +457,7 @@ def _words(content: bytes) -> int:
 
 
 def _require_few(path: Path, count: float, most: int, what: str) -> None:
-    if count > most:
+    if not count <= most:  # also refuses NaN
         raise _unreadable(path, "file", f"it has {count:.0f} {what}; the maximum is {most}")
 
 
@@ -462,7 +468,8 @@ def _require_whole(path: Path, kind: str, content: bytes) -> None:
         announced = struct.unpack_from("<I", content, 8)[0]
         if announced > len(content):
             raise _unreadable(path, f"byte {len(content)}", f"its header announces {announced} bytes; is it truncated?")
-    if kind == "dae" and (content[:2] == b"PK" or b"<!DOCTYPE" in content or b"<!ENTITY" in content):
+    hides_tags = b"utf-7" in content[:1000].lower()
+    if kind == "dae" and (content[:2] == b"PK" or b"<!DOCTYPE" in content or b"<!ENTITY" in content or hides_tags):
         raise _unreadable(path, "byte 0", "a DAE must be plain XML, without entities and not compressed")
     if kind == "ply" and b"end_header" not in content:
         raise _unreadable(path, "header", "it has no 'end_header'")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -42,6 +43,20 @@ SCENES: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "nodes of a glTF": ("a.glb", lambda: shared(1, 10_001), "10001 nodes; the maximum is 10000"),
     "one triangle of a glTF in many places": ("a.glb", lambda: shared(1001, 1000), "1001000 triangles; the maximum is 1000000"),
     "empty objects of a glTF": ("a.gltf", lambda: b'{"extras": [' + b"{}," * 1_000_001 + b"{}]}", "values; the maximum is 2000000"),
+    "tags of a DAE": ("a.dae", lambda: DAE.format(unit="<a/>" * 2_000_000, up="Z_UP").encode(), "tags; the maximum is 2000000"),
+    "a DAE in an encoding that hides tags": ("a.dae", lambda: b'<?xml version="1.0" encoding="UTF-7"?>+ADw-COLLADA/+AD4-', "plain XML"),
+    "looks of a DAE without end": ("a.dae", lambda: DAE.format(unit="<bind_material>" * 20_000, up="Z_UP").encode(), "XMLSyntaxError"),
+    "units of a DAE without end": ("a.dae", lambda: DAE.format(unit="<unit " * 50_000, up="Z_UP").encode(), "XMLSyntaxError"),
+    "values that a glTF claims and takes back": (
+        "a.glb",
+        lambda: glb({"meshes": [], "accessors": [{"componentType": 5126, "type": "VEC3", "count": n} for n in (10**9, -(10**9))]}),
+        "2000000000 values",
+    ),
+    "a glTF that claims no number": (
+        "a.glb",
+        lambda: glb({"meshes": [], "accessors": [{"componentType": 5126, "type": "VEC3", "count": float("nan")}]}),
+        "nan values",
+    ),
     "values that a glTF claims": ("a.glb", lambda: glb({"meshes": []} | accessor(10**9, view=False)), "1000000000 values"),
 }
 
@@ -53,8 +68,10 @@ def test_a_scene_is_counted_before_it_is_built(name: str, tmp_path: Path, monkey
     file, content, reason = SCENES[name]
     (tmp_path / file).write_bytes(content())
     monkeypatch.setattr(trimesh, "load_scene", never)
+    began = time.process_time()
     with pytest.raises(ReadError, match=reason):
         read_mesh(tmp_path / file)
+    assert time.process_time() - began < 5
 
 
 @pytest.mark.parametrize(
