@@ -11,12 +11,17 @@ from articad.auditing.examine import AUDITED, AuditOptions, audit_file
 from articad.auditing.report import Audit, Scoreboard
 from articad.errors import ArticadError
 from articad.findings import Finding, Findings
-from articad.importers.reading import read_xml
+from articad.importers.reading import is_file_name, read_xml
 
 
 def models_below(folder: Path) -> Iterator[Path]:
-    """Yield the URDF, MJCF, FreeCAD and STEP files below a folder; XML that is not MJCF, or that another MJCF includes, is skipped."""
-    files = sorted(path for path in folder.rglob("*") if path.suffix.lower() in AUDITED and path.is_file())
+    """Yield the URDF, MJCF, FreeCAD and STEP files below a folder; XML that is not MJCF, or that another MJCF includes, is skipped.
+
+    Links that lead out of the folder are skipped too.
+    """
+    inside = folder.resolve()
+    found = (path for path in folder.rglob("*") if path.suffix.lower() in AUDITED and path.is_file())
+    files = sorted(path for path in found if path.resolve().is_relative_to(inside))
     included: set[Path] = set()
     mjcf: set[Path] = set()
     for path in files:
@@ -28,7 +33,8 @@ def models_below(folder: Path) -> Iterator[Path]:
             continue  # unreadable XML of an .xml may be anything
         if document.tag == "mujoco":
             mjcf.add(path)
-            included |= {(path.parent / element.get("file", "")).resolve() for element in document.iter("include")}
+            names = (element.get("file", "") for element in document.iter("include"))
+            included |= {(path.parent / name).resolve() for name in names if is_file_name(name)}
     for path in files:
         if AUDITED[path.suffix.lower()] != "mjcf" or (path in mjcf and path.resolve() not in included):
             yield path

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -73,10 +75,16 @@ class MeshReferences:
     def _missing(self, name: str, *, unsafe: bool) -> str:
         if unsafe:
             return f"it leads out of {self.folder.root.name or self.folder.root}"
-        wanted = Path(name.removeprefix("package://")).name.lower()
-        places = [self.folder.here, *(here for here in self.folder.here.iterdir() if here.is_dir())]
-        for place in places:
-            for file in sorted(place.iterdir()):
-                if file.name.lower() == wanted and wanted:
-                    return f"there is no such file, but there is {file.relative_to(self.folder.here)}"
-        return "there is no such file"
+        near = self._near.get(Path(name.removeprefix("package://")).name.lower())
+        return f"there is no such file, but there is {near}" if near else "there is no such file"
+
+    @cached_property
+    def _near(self) -> dict[str, Path]:
+        """The files in the file's folder and in the folders in it, by their names in small letters; links are not followed."""
+        found: dict[str, Path] = {}
+        here = self.folder.here
+        for place in (here, *sorted(below for below in here.iterdir() if below.is_dir() and not below.is_symlink())):
+            with contextlib.suppress(OSError):
+                for file in sorted(place.iterdir()):
+                    found.setdefault(file.name.lower(), file.relative_to(here))
+        return found

@@ -93,8 +93,11 @@ def _part(index: int, row: Mapping[str, Any], whole: TriMesh, taken: Counter[str
     path = row.get("path")
     above = [escaped(str(name))[:_NAME] for name in path[:50]] if isinstance(path, list) else []
     wanted = escaped(str(row.get("instance") or ""))[:_NAME] or product or f"part_{index + 1}"
-    taken[wanted] += 1
-    name = wanted if taken[wanted] == 1 else f"{wanted} ({taken[wanted]})"
+    name = wanted
+    while name in taken:  # the file may state a name that looks numbered
+        taken[wanted] += 1
+        name = f"{wanted} ({taken[wanted]})"
+    taken[name] = 1
     assert whole.face is not None
     chosen = whole.face == index
     mesh = whole.submesh(np.asarray(chosen)) if chosen.any() else None

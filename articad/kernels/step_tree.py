@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterator
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ from articad.kernels.tessellation import Mesh, tessellate
 
 MOST_DEPTH = 50  # levels of nested products
 MOST_PARTS = 2000
+MOST_PLACED = 20_000  # instances of products, those of assemblies included
 _GENERATED = re.compile(r"=>|NAUO\d*$|\d*$")  # names of instances in files of programs that name only products
 
 
@@ -52,8 +54,9 @@ def read(content: bytes, *, deflection: float, angle: float) -> tuple[list[Json]
     tool.GetFreeShapes(labels)
     rows: list[Json] = []
     meshes: list[Mesh] = []
+    placed = count(1)
     for label in _sequence(labels):
-        for path, product, instance, shape in _leaves(label, TopLoc_Location(), (), 0):
+        for path, product, instance, shape in _leaves(label, TopLoc_Location(), (), placed):
             for piece, loose in _pieces(shape):
                 if len(rows) >= MOST_PARTS:
                     raise ValueError(f"it holds more than {MOST_PARTS} parts")
@@ -64,13 +67,16 @@ def read(content: bytes, *, deflection: float, angle: float) -> tuple[list[Json]
     return rows, measure.npz(_together(meshes))
 
 
-def _leaves(label: Any, place: Any, path: tuple[str, ...], depth: int) -> Iterator[tuple[tuple[str, ...], str, str, Any]]:
+def _leaves(label: Any, place: Any, path: tuple[str, ...], placed: Iterator[int]) -> Iterator[tuple[tuple[str, ...], str, str, Any]]:
     """Yield the shapes that are not assemblies, placed, with the products above them, their own product, and the instance's name.
 
-    The instance's name is empty if the product has only one instance, or if a program has numbered its instances.
+    The instance's name is empty if the product has only one instance, or if a program has numbered its instances. `placed` counts the
+    instances: products without a shape that each hold the next one twice would be 2⁵⁰.
     """
-    if depth > MOST_DEPTH:
+    if len(path) > MOST_DEPTH:
         raise ValueError(f"its products are more than {MOST_DEPTH} deep")
+    if next(placed) > MOST_PLACED:
+        raise ValueError(f"it places more than {MOST_PLACED} products")
     here = place.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label)) if XCAFDoc_ShapeTool.IsReference_s(label) else place
     instance, target = _name(label), label
     if XCAFDoc_ShapeTool.IsReference_s(label):
@@ -81,7 +87,7 @@ def _leaves(label: Any, place: Any, path: tuple[str, ...], depth: int) -> Iterat
         components = Sequence_TDF_Label()
         XCAFDoc_ShapeTool.GetComponents_s(target, components)
         for component in _sequence(components):
-            yield from _leaves(component, here, (*path, product), depth + 1)
+            yield from _leaves(component, here, (*path, product), placed)
         return
     shape = XCAFDoc_ShapeTool.GetShape_s(target)
     if not shape.IsNull():

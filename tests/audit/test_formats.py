@@ -7,18 +7,23 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from articad.assembly import Assembly
 from articad.auditing.examine import AuditOptions, audit_assembly, audit_file
 from articad.auditing.many import audit_folder, models_below
+from articad.auditing.mesh_references import MeshReferences
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.export.freecad import write_freecad
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
+from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.geometry.shapes import box
+from articad.importers.reading import Folder
+from articad.kernels.step_assembly import _parts
 from articad.kinematics import declare
 from articad.plan.resolve import Waiver
 from tests.assemblies import all_joint_kinds
@@ -275,3 +280,33 @@ def test_an_audit_of_a_file_states_that_only_records_waive_an_overlap(write: Any
             assert "pressed" in told.message
             assert "only" in told.message.lower()
             assert "records" in told.message
+
+
+def test_no_link_that_leads_out_of_a_folder_is_followed(tmp_path: Path) -> None:
+    folder, other = tmp_path / "models", tmp_path / "others"
+    for made in (folder / "inner", other):
+        made.mkdir(parents=True)
+    for suffix in ("urdf", "xml"):
+        (other / f"secret.{suffix}").write_text("<mujoco/>" if suffix == "xml" else '<robot name="secret"><link name="a"/></robot>')
+        (folder / f"linked.{suffix}").symlink_to(other / f"secret.{suffix}")
+    (folder / "away").symlink_to(other)
+    (folder / "inner/own.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+    (folder / "near.urdf").symlink_to(folder / "inner/own.urdf")
+    assert [path.name for path in models_below(folder)] == ["own.urdf", "near.urdf"]
+
+
+def test_a_missing_mesh_is_looked_for_beside_the_file_and_through_no_link(tmp_path: Path) -> None:
+    (tmp_path / "others").mkdir()
+    (tmp_path / "others/Gone.STL").write_text("")
+    (tmp_path / "in/meshes").mkdir(parents=True)
+    (tmp_path / "in/away").symlink_to(tmp_path / "others")
+    (tmp_path / "in/meshes/Near.STL").write_text("")
+    references = MeshReferences(Folder.of(tmp_path / "in/a.urdf", None))
+    assert references.mesh("near.stl", (1, 1, 1))[2] == "there is no such file, but there is meshes/Near.STL"
+    assert references.mesh("gone.stl", (1, 1, 1))[2] == "there is no such file"
+
+
+def test_no_part_of_a_step_file_hides_behind_a_name_that_looks_numbered() -> None:
+    whole = TriMesh(np.random.default_rng(1).random((12, 3)), np.arange(12).reshape(4, 3), face=np.arange(4))
+    parts = _parts([{"product": name, "valid": True} for name in ("a", "a", "a (2)", "a")], whole)
+    assert [part.name for part in parts] == ["a", "a (2)", "a (2) (2)", "a (3)"]
