@@ -375,6 +375,10 @@ _DAE_LOOKS = ("{*}bind_material", "{*}library_materials", "{*}library_effects", 
 """DAE elements about appearance: a missing material would make its mesh unreadable."""
 
 
+_DAE_ENCODINGS = frozenset({b"utf-8", b"utf8", b"us-ascii", b"iso-8859-1", b"windows-1252"})
+"""Encodings in which each tag begins with a byte `<`, so that tags can be counted: not so in UTF-7, UTF-16 and EBCDIC."""
+
+
 def _unit_of_dae(root: Any) -> float:
     """Return the size of one unit of a DAE in metres: `<asset><unit meter="…"/>`, 1 if none is stated."""
     stated = root.find("{*}asset/{*}unit[@meter]")
@@ -468,11 +472,18 @@ def _require_whole(path: Path, kind: str, content: bytes) -> None:
         announced = struct.unpack_from("<I", content, 8)[0]
         if announced > len(content):
             raise _unreadable(path, f"byte {len(content)}", f"its header announces {announced} bytes; is it truncated?")
-    hides_tags = b"utf-7" in content[:1000].lower()
-    if kind == "dae" and (content[:2] == b"PK" or b"<!DOCTYPE" in content or b"<!ENTITY" in content or hides_tags):
+    if kind == "dae" and (not _is_countable(content) or b"<!DOCTYPE" in content or b"<!ENTITY" in content):
         raise _unreadable(path, "byte 0", "a DAE must be plain XML, without entities and not compressed")
     if kind == "ply" and b"end_header" not in content:
         raise _unreadable(path, "header", "it has no 'end_header'")
+
+
+def _is_countable(content: bytes) -> bool:
+    """Return whether a text begins as XML in one of `_DAE_ENCODINGS`; its declaration must end within 1,000 bytes."""
+    beginning = content[:1000].removeprefix(b"\xef\xbb\xbf").lstrip()
+    declaration, end, _ = beginning.partition(b"?>") if beginning.startswith(b"<?xml") else (b"", b"?>", b"")
+    stated = re.search(rb"encoding\s*=\s*[\"']([\w.-]*)", declaration)
+    return bool(end) and re.match(rb"<[^\0]", beginning) is not None and (stated is None or stated[1].lower() in _DAE_ENCODINGS)
 
 
 def _checked(path: Path, read: Callable[[], TriMesh]) -> TriMesh:

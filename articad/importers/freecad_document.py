@@ -15,7 +15,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import ArticadError, ReadError
 from articad.export.freecad_split import join, listed
 from articad.files import read_file
-from articad.importers.reading import LARGEST_MM, MAX_ELEMENTS, MAX_XML_BYTES, Folder, color_text, parse_xml, unreadable
+from articad.importers.reading import LARGEST_MM, MAX_ELEMENTS, MAX_LINKS, MAX_XML_BYTES, Folder, color_text, parse_xml, unreadable
 from articad.kernels.archive import Archive, BadArchiveError
 
 MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 256 * 2**20, 384 * 2**20, 20_000
@@ -23,7 +23,7 @@ MAX_FILES = 200  # that one document may link to, directly or not
 MAX_ALL_XML = 128 * 2**20  # bytes of Document.xml and GuiDocument.xml in a document and all that it links to
 MAX_ALL_BYTES = 512 * 2**20  # of their files
 MAX_DEPTH = 50  # of groups within groups and links to links
-MAX_MEMBERS = 5_000  # of an assembly, a part or a folder, those of all groups in it, each counted as often as it is shown
+MAX_MEMBERS = 2 * MAX_LINKS  # of an assembly, a part or a folder, those of all groups in it, each counted as often as it is shown
 
 IDENTITY = SE3.identity()
 _GROUPS = ("App::Part", "App::DocumentObjectGroup", "Assembly::AssemblyObject", "Assembly::AssemblyLink")

@@ -45,6 +45,13 @@ SCENES: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "empty objects of a glTF": ("a.gltf", lambda: b'{"extras": [' + b"{}," * 1_000_001 + b"{}]}", "values; the maximum is 2000000"),
     "tags of a DAE": ("a.dae", lambda: DAE.format(unit="<a/>" * 2_000_000, up="Z_UP").encode(), "tags; the maximum is 2000000"),
     "a DAE in an encoding that hides tags": ("a.dae", lambda: b'<?xml version="1.0" encoding="UTF-7"?>+ADw-COLLADA/+AD4-', "plain XML"),
+    "a DAE in EBCDIC": ("a.dae", lambda: '<?xml version="1.0" encoding="IBM037"?><COLLADA/>'.encode("cp037"), "plain XML"),
+    "a DAE in UTF-16": ("a.dae", lambda: '<?xml version="1.0" encoding="UTF-16"?><COLLADA/>'.encode("utf-16"), "plain XML"),
+    "a DAE whose encoding stands far behind": (
+        "a.dae",
+        lambda: b'<?xml version="1.0"' + b" " * 2000 + b'encoding="UTF-7"?>+ADw-COLLADA/+AD4-',
+        "plain XML",
+    ),
     "looks of a DAE without end": ("a.dae", lambda: DAE.format(unit="<bind_material>" * 20_000, up="Z_UP").encode(), "XMLSyntaxError"),
     "units of a DAE without end": ("a.dae", lambda: DAE.format(unit="<unit " * 50_000, up="Z_UP").encode(), "XMLSyntaxError"),
     "values that a glTF claims and takes back": (

@@ -18,6 +18,7 @@ from articad.errors import ReadError
 from articad.export.freecad_content import unpacked_content
 from articad.importers import freecad
 from articad.importers.freecad import read_freecad
+from articad.importers.freecad_document import MAX_MEMBERS
 from articad.importers.mjcf import read_mjcf
 from articad.importers.reading import Folder
 from articad.importers.referenced_files import require_closed
@@ -312,9 +313,9 @@ FLEXIBLE = '<Property name="Rigid"><Bool value="false"/></Property>'
     ],
 )
 def test_groups_that_show_others_twice_are_counted(kind: str, more: str, last: str, tmp_path: Path) -> None:
-    groups = {f"x{n}": (kind, more + held("Group", f"x{n + 1}", f"x{n + 1}")) for n in range(14)} | {"x14": (last, "")}
+    groups = {f"x{n}": (kind, more + held("Group", f"x{n + 1}", f"x{n + 1}")) for n in range(15)} | {"x15": (last, "")}
     path = with_objects(tmp_path / "a.FCStd", {"A": ("Assembly::AssemblyObject", held("Group", "x0", "P", "G"))} | groups)
-    with pytest.raises(ReadError, match=r"more than 5000"):
+    with pytest.raises(ReadError, match=rf"more than {MAX_MEMBERS}"):
         read_freecad(path)
 
 
