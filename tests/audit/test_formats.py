@@ -307,6 +307,8 @@ def test_a_missing_mesh_is_looked_for_beside_the_file_and_through_no_link(tmp_pa
 
 
 def test_no_part_of_a_step_file_hides_behind_a_name_that_looks_numbered() -> None:
-    whole = TriMesh(np.random.default_rng(1).random((12, 3)), np.arange(12, dtype=np.int32).reshape(4, 3), face=np.arange(4, dtype=np.int32))
+    whole = TriMesh(
+        np.random.default_rng(1).random((12, 3)), np.arange(12, dtype=np.int32).reshape(4, 3), face=np.arange(4, dtype=np.int32)
+    )
     parts = _parts([{"product": name, "valid": True} for name in ("a", "a", "a (2)", "a")], whole)
     assert [part.name for part in parts] == ["a", "a (2)", "a (2) (2)", "a (3)"]
