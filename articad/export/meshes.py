@@ -31,7 +31,7 @@ DRAWN_TRIANGLES = 5000  # target size of a visual mesh, within the next bound
 DRAWN_SHARE, MOST_SHARE = 5e-4, 8e-3  # of its diagonal: deviation of its surface at first, and at most
 DRAWN_MM = 0.05  # deviation at first of a mesh in a file: a pin and its bore, 0.1 mm apart, share no volume there either
 THINNEST_MM: Final = 1e-5  # of a visual triangle: points in m have 8 digits after the point, where files keep them in single precision
-_SCHEME: Final = "articad.drawn/3"  # must change with anything that changes visual meshes
+SCHEME: Final = "articad.drawn/3"  # must change with anything that changes visual meshes
 _FILE: Final = "drawn.npz"
 
 
@@ -71,7 +71,7 @@ class _Wanted:
 def _drawn(wanted: _Wanted) -> Drawn | None:
     """Return the simplified mesh, from the cache if it is there; None if the mesh stays as it is."""
     cache = wanted.cache or BuildCache()
-    digest = hashlib.sha256(f"{_SCHEME} {wanted.digest} {wanted.least!r}".encode()).hexdigest()
+    digest = hashlib.sha256(f"{SCHEME} {wanted.digest} {wanted.least!r}".encode()).hexdigest()
     folder = cache.get(digest)
     if folder is not None:
         head, meshes = load_arrays((folder / _FILE).read_bytes())

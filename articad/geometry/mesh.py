@@ -6,7 +6,7 @@ import hashlib
 import math
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,10 +79,10 @@ class TriMesh:
         used = self.vertices if self._all_used else self.vertices[np.unique(self.triangles)]
         return _frozen(np.stack([used.min(axis=0), used.max(axis=0)]), np.float64)
 
-    @property
+    @cached_property
     def volume(self) -> float:
         """Enclosed volume [mm³]; negative if the mesh is inside out, meaningless if it is open."""
-        return self._integrals[0]
+        return float(_tetrahedra(self.vertices, self.triangles).d.sum()) / 6 if len(self.triangles) else 0.0
 
     @cached_property
     def area(self) -> float:
@@ -240,6 +240,32 @@ def _frozen(array: Any, dtype: type) -> NDArray[Any]:
     return result
 
 
+class _Tetrahedra(NamedTuple):
+    """Tetrahedra from a mesh's centre to its triangles.
+
+    Attributes:
+        origin: Centre of the bounding box [mm], `(3,)`.
+        local: The vertices about it, `(3, V)`.
+        corners: Those of the triangles, a, b and c, each as rows of x, y and z, `(T,)` each.
+        d: Six times the volume of each, a·(b x c) [mm³], `(T,)`.
+    """
+
+    origin: FloatArray
+    local: FloatArray
+    corners: tuple[list[FloatArray], ...]
+    d: FloatArray
+
+
+def _tetrahedra(vertices: FloatArray, triangles: IntArray) -> _Tetrahedra:
+    """Return the signed tetrahedra of a mesh that has triangles."""
+    origin = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    local = np.ascontiguousarray((vertices - origin).T)
+    corners = tuple([row[corner] for row in local] for corner in np.ascontiguousarray(triangles.T))
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = corners
+    d = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+    return _Tetrahedra(origin, local, corners, d)
+
+
 def _solid_integrals(vertices: FloatArray, triangles: IntArray) -> tuple[float, FloatArray, FloatArray]:
     """Sum signed tetrahedra from a point inside the bounding box.
 
@@ -250,15 +276,10 @@ def _solid_integrals(vertices: FloatArray, triangles: IntArray) -> tuple[float, 
     """
     if not len(triangles):
         return 0.0, np.zeros(3), np.zeros((3, 3))
-    origin = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
-    x, y, z = np.ascontiguousarray((vertices - origin).T)
-    i, j, k = np.ascontiguousarray(triangles.T)
-    ax, ay, az, bx, by, bz, cx, cy, cz = x[i], y[i], z[i], x[j], y[j], z[j], x[k], y[k], z[k]
-    d = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
-    s = np.stack([ax + bx + cx, ay + by + cy, az + bz + cz])
+    origin, local, (a, b, c), d = _tetrahedra(vertices, triangles)
+    s = np.stack([a[axis] + b[axis] + c[axis] for axis in range(3)])
     volume = float(d.sum()) / 6
-    weight = sum(np.bincount(corner, weights=d, minlength=len(vertices)) for corner in (i, j, k))
-    local = np.stack([x, y, z])
+    weight = sum(np.bincount(corner, weights=d, minlength=len(vertices)) for corner in triangles.T)
     second = ((s * d) @ s.T + (local * weight) @ local.T) / 120
     if volume == 0.0:
         return 0.0, origin, np.zeros((3, 3))

@@ -119,6 +119,25 @@ def test_only_parts_that_share_a_joint_are_excluded_and_the_joint_is_cited(cache
     assert "joint stand" in cited[0][0]
 
 
+def lid_above_box(gap: float, wide: float = 20.0) -> Assembly:
+    """Two blocks, 20 mm high, the upper one `gap` above the lower one."""
+    lower, upper = block("lower", (20, 20, 20), top=frame(at=(0, 0, 10 + gap))), block("upper", (wide, 20, 20), foot=frame(at=(0, 0, -10)))
+    return Assembly.from_parts("two", parts=[lower, upper], joints=[declare.fixed("lid", lower["top"], upper["foot"])], ground="lower")
+
+
+def test_the_gap_of_joined_parts_is_measured_once_for_their_shapes_and_poses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ARTICAD_CACHE", str(tmp_path))
+    pair = ("lower", "upper")
+    wide = collisions.adjacent(lid_above_box(0.25), pair)
+    assert wide == "adjacent: lower and upper touch by design at joint lid: the gap at rest is 0.25 mm"
+    with monkeypatch.context() as measured_no_more:
+        measured_no_more.setattr(collisions, "manifold", None)
+        assert collisions.adjacent(lid_above_box(0.25), pair) == wide
+    assert "the gap at rest is 0.5 mm" in collisions.adjacent(lid_above_box(0.5), pair)
+    assert "more than 1 mm apart" in collisions.adjacent(lid_above_box(1.5), pair)
+    assert "the gap at rest is 0.25 mm" in collisions.adjacent(lid_above_box(0.25, wide=30.0), pair)
+
+
 def test_solids_that_overlap_at_rest_are_excluded_and_it_is_said(cache: BuildCache) -> None:
     a, b = block("a", (20, 20, 20), at=frame()), block("b", (20, 20, 20), at=frame(at=(-35, 0, 0)))
     ground = block("ground", (5, 5, 5), one=frame(at=(0, 0, 200)), two=frame(at=(-20, 0, 200)))
