@@ -159,6 +159,7 @@ OWN = {
     "export/convex.py": "its own cache",
     "export/freecad_job.py": "built parts in the cache, and a private folder",
     "export/freecad_native.py": "a private folder",
+    "export/gaps.py": "its own cache",
     "export/meshes.py": "its own cache",
     "export/step.py": "built parts in the cache",
     "files.py": "the one place",

@@ -57,6 +57,7 @@ ALLOWED = {
     "export/freecad.py": PRIVATE,
     "export/freecad_job.py": PRIVATE,
     "export/freecad_look.py": PRIVATE,
+    "export/gaps.py": PRIVATE,
     "export/meshes.py": PRIVATE,
     "kernels/build123d.py": PRIVATE,
     "kernels/freecad.py": PRIVATE,

@@ -5,26 +5,19 @@ Convex pieces lie inside the solids. So they touch only where the solids touch, 
 
 from __future__ import annotations
 
-import contextlib
-import hashlib
-import json
 from collections import defaultdict
 from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-import manifold3d
-
 from articad.connectors.se3 import SE3
-from articad.errors import ArticadError
 from articad.export.contacts import ContactSearch, poses_in_motion
-from articad.export.convex import Pieces, as_it_is, manifold, pieces_of, whole_hull
-from articad.export.hulls import HullOverlap, Pair, mating_pairs
+from articad.export.convex import Pieces, as_it_is, pieces_of, whole_hull
+from articad.export.gaps import TOUCHING_MM, gaps_at_rest
+from articad.export.hulls import HullOverlap, Pair
 from articad.export.losses import Feature
 from articad.export.lowering import metres
-from articad.export.meshes import SCHEME, drawn
 from articad.export.once import once
-from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
 from articad.kernels.cache import BuildCache
 
@@ -35,8 +28,6 @@ if TYPE_CHECKING:
 Collision = Literal["pieces", "solid", "hull"]
 
 HULL_SHARE = 1e-6  # of a part's volume: rounding in hulls and pieces
-TOUCHING_MM = 1.0  # largest gap of two joined parts that touch by design; it includes the play of their fit
-_GAPS, _GAPS_FILE = "articad.gaps/1", "gaps.json"  # the first must change with how gaps are measured
 EXACT_MM = 1e-3  # of the surface that pieces may omit and still count as exact
 
 
@@ -186,7 +177,7 @@ def adjacent(assembly: Assembly, pair: Pair) -> str:
     """Return why two parts that share joints do not collide: they touch by design there, or they were not checked."""
     joints = ", ".join(once(assembly, "names of joints", lambda: _names_of_joints(assembly))[frozenset(pair)])
     a, b = pair
-    gap = once(assembly, "gaps", lambda: _gaps(assembly))[pair]
+    gap = once(assembly, "gaps", lambda: gaps_at_rest(assembly))[pair]
     if gap is None:
         return f"adjacent: joint {joints} connects {a} and {b}, and one of them has no solid"
     if gap < TOUCHING_MM:
@@ -200,41 +191,6 @@ def _names_of_joints(assembly: Assembly) -> defaultdict[frozenset[str], list[str
     for joint in assembly.mechanism.joints:
         names[frozenset((joint.parent, joint.child))].append(joint.name)
     return names
-
-
-def _gaps(assembly: Assembly) -> dict[Pair, float | None]:
-    """Return the distances of joined parts at rest up to `TOUCHING_MM`, measured on the visual meshes; None where one has no solid.
-
-    The cache of built parts keeps them by shapes and poses. A failure to write there is ignored.
-    """
-    pairs = mating_pairs(assembly.mechanism.joints, assembly.mechanism.parts)
-    rest = assembly.mechanism.rest_poses()
-    solids = {name: [shape for shape in assembly.parts[name].collisions if _is_solid(shape.mesh)] for pair in pairs for name in pair}
-    digest = hashlib.sha256(f"{_GAPS} {SCHEME} {TOUCHING_MM}".encode())
-    for name in (name for pair in pairs for name in pair):
-        digest.update(rest[name].matrix.tobytes())
-        for shape in solids[name]:
-            digest.update(shape.mesh.digest.encode() + shape.frame.matrix.tobytes())
-    cache = BuildCache()
-    folder = cache.get(digest.hexdigest())
-    if folder is not None:
-        return dict(zip(pairs, json.loads((folder / _GAPS_FILE).read_bytes()), strict=True))
-    bodies = {
-        name: [_body(assembly, drawn(shape.placed).mesh).transform(rest[name].matrix[:3]) for shape in shapes]
-        for name, shapes in solids.items()
-    }
-    gaps = [min((float(one.min_gap(other, TOUCHING_MM)) for one in bodies[a] for other in bodies[b]), default=None) for a, b in pairs]
-    with contextlib.suppress(ArticadError), cache.writing(digest.hexdigest()) as new:
-        (new / _GAPS_FILE).write_text(json.dumps(gaps))
-    return dict(zip(pairs, gaps, strict=True))
-
-
-def _is_solid(mesh: TriMesh) -> bool:
-    return mesh.is_closed and mesh.volume > 0
-
-
-def _body(assembly: Assembly, mesh: TriMesh) -> manifold3d.Manifold:
-    return once(assembly, ("body", mesh.digest), lambda: manifold(mesh))
 
 
 def excuse(contact: HullOverlap) -> str:

@@ -14,7 +14,7 @@ from lxml import etree
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
-from articad.export import collisions, contacts, convex, meshes
+from articad.export import collisions, contacts, convex, gaps, meshes
 from articad.export.contacts import poses_in_motion
 from articad.export.convex import pieces_of, whole_hull
 from articad.export.mjcf import write_mjcf
@@ -131,7 +131,7 @@ def test_the_gap_of_joined_parts_is_measured_once_for_their_shapes_and_poses(tmp
     wide = collisions.adjacent(lid_above_box(0.25), pair)
     assert wide == "adjacent: lower and upper touch by design at joint lid: the gap at rest is 0.25 mm"
     with monkeypatch.context() as measured_no_more:
-        measured_no_more.setattr(collisions, "manifold", None)
+        measured_no_more.setattr(gaps, "manifold", None)
         assert collisions.adjacent(lid_above_box(0.25), pair) == wide
     assert "the gap at rest is 0.5 mm" in collisions.adjacent(lid_above_box(0.5), pair)
     assert "more than 1 mm apart" in collisions.adjacent(lid_above_box(1.5), pair)
