@@ -232,7 +232,7 @@ def test_an_export_with_a_filled_cache_computes_no_mesh_again(write: Any, cache:
         sizes.append(len(mesh.triangles))
         return made(mesh)
 
-    for module in (convex, collisions, contacts, meshes):
+    for module in (convex, gaps, contacts, meshes):
         monkeypatch.setattr(module, "manifold", counted)
     monkeypatch.setattr(convex, "inscribed", lambda *_, **__: pytest.fail("pieces are found anew"))
     again = write(balls(), cache=cache)
