@@ -146,7 +146,7 @@ class LiteLLM:
             meter: Counts the calls and limits their time.
 
         Raises:
-            TransportError: As `complete`.
+            TransportError: As `complete`; also if vectors have different sizes.
             BudgetError: If the budget allows no further call.
         """
         rows: list[list[float]] = []
@@ -157,9 +157,12 @@ class LiteLLM:
             rows += answer["rows"]
         self._sizes |= {len(row) for row in rows}
         if len(self._sizes) > 1:
-            message = f"{self._model} gave vectors of {min(self._sizes)} and of {max(self._sizes)} numbers."
-            raise transport_error("E_TRANSPORT", message, "Name another model for --embeddings.")
+            raise self._sizes_differ()
         return rows
+
+    def _sizes_differ(self) -> TransportError:
+        message = f"{self._model} gave vectors of {min(self._sizes)} and of {max(self._sizes)} numbers."
+        return transport_error("E_TRANSPORT", message, "Name another model for --embeddings.")
 
     @property
     def sees(self) -> bool:
