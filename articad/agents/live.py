@@ -40,7 +40,7 @@ _SHOWN_CHARACTERS: Final = 300  # of a provider's own message
 _LOCAL_HOSTS: Final = frozenset({"localhost", "127.0.0.1", "::1", "0.0.0.0", "host.docker.internal"})  # noqa: S104 - compared, never bound
 _SECRET_NAME = re.compile(r"KEY|TOKEN|SECRET|PASSWORD|CREDENTIAL", re.IGNORECASE)
 _SECRET_SHAPE = re.compile(r"(?i)\b(?:sk|pk|rk|key|api|gsk|xai|AIza)[-_][\w*.-]{6,}|\bbearer\s+[^\s,;]+|//[^/@\s]+:[^/@\s]+@")
-_BLANK = re.compile(r"[\x00-\x20\x7f]")  # what no address holds, and what some readers of addresses leave out
+_BLANK = re.compile(r"[\x00-\x20\x7f]")  # characters that an address cannot hold, and that some parsers of addresses skip
 _SHORTEST_SECRET = 6  # characters; shorter values of such variables are words like "none"
 _TOLD: Final = "one JSON object and nothing else"  # every prompt that describes the form of its answer contains these words
 _FORM = (
@@ -68,7 +68,7 @@ class LiteLLM:
 
     Raises:
         TransportError: `E_KEY_MISSING`, naming the environment variable, if the provider needs one that is not set; `E_TRANSPORT` if
-            models cannot be called on this machine, or `api_base` is no address.
+            models cannot be called on this machine, or `api_base` is not an address.
     """
 
     def __init__(
@@ -333,17 +333,17 @@ class LiteLLMEmbedder:
 
 
 def _require_address(address: str) -> None:
-    """Refuse an address that is none, before anything is asked and asked again.
+    """Refuse a text that is not the address of an endpoint, before requests to it are tried and repeated.
 
     Raises:
         TransportError: If it is not http:// or https://, a host, and perhaps a port and a path.
     """
     try:
         stated = urlsplit(address)
-        is_one = stated.scheme in ("http", "https") and bool(stated.hostname) and stated.port != 0 and not _BLANK.search(address)
+        is_valid = stated.scheme in ("http", "https") and bool(stated.hostname) and stated.port != 0 and not _BLANK.search(address)
     except ValueError:  # brackets that do not close, a port that is no number
-        is_one = False
-    if not is_one:
+        is_valid = False
+    if not is_valid:
         message = f"{without_secrets(address)!r} is not the address of an endpoint."
         raise transport_error("E_TRANSPORT", message, "Write it as http://127.0.0.1:8000/v1.")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+from itertools import chain
 from typing import TYPE_CHECKING, Final
 
 import manifold3d
@@ -33,9 +34,9 @@ def gaps_at_rest(assembly: Assembly) -> dict[Pair, float | None]:
     """
     pairs = mating_pairs(assembly.mechanism.joints, assembly.mechanism.parts)
     rest = assembly.mechanism.rest_poses()
-    solids = {name: [shape for shape in assembly.parts[name].collisions if _is_solid(shape.mesh)] for pair in pairs for name in pair}
+    solids = {name: [shape for shape in assembly.parts[name].collisions if _is_solid(shape.mesh)] for name in chain.from_iterable(pairs)}
     digest = hashlib.sha256(f"{_SCHEME} {DRAWN} {TOUCHING_MM}".encode())
-    for name in (name for pair in pairs for name in pair):
+    for name in chain.from_iterable(pairs):
         digest.update(rest[name].matrix.tobytes())
         for shape in solids[name]:
             digest.update(shape.mesh.digest.encode() + shape.frame.matrix.tobytes())
