@@ -45,9 +45,8 @@ BULK = 512  # rows processed together
 TUBES = 16  # pieces of drivers' ranges processed together
 NODES = np.array([-1.0, -(0.5**0.5), 0.0, 0.5**0.5, 1.0])  # of quartic interpolation: the extrema of the Chebyshev polynomial T4, whose ...
 LEBESGUE, QUINTIC = 1.8, 1 / 960  # ... Lebesgue constant is below 1.8, and whose error is below 1/960 of the largest fifth derivative
-BERNSTEIN = np.linalg.inv(
-    [[math.comb(4, j) * (1 + t) ** j * (1 - t) ** (4 - j) / 16 for j in range(5)] for t in NODES]
-)  # from values to coefficients
+# from values at the nodes to Bernstein coefficients
+BERNSTEIN = np.linalg.inv([[math.comb(4, j) * (1 + t) ** j * (1 - t) ** (4 - j) / 16 for j in range(5)] for t in NODES])
 LARGEST = 1e7  # mm or rad: beyond it, rounding of numbers matters
 TYPES = {"f": "f8", "i": "i8", "u": "i8", "U": "U"}  # of arrays, by kind: short numbers overflow, and complex ones have no order
 SWUNG = -7  # a piece stays inside a cone about a ball's axis however it swings, and the other one outside
