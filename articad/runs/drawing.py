@@ -56,7 +56,8 @@ def record_pictures(run: Run, assembly: Assembly, *, cache: BuildCache | None = 
     if any(cache.get(drawing.key) is None for drawing in wanted):
         limits = launcher.Limits(seconds=_SECONDS)
         words = [str(run.path.resolve()), str(cache.root.resolve()), sandbox]
-        ended = launcher.run(words, module="articad.runs.drawing", limits=limits)
+        own = launcher.environment(*launcher.OWN)  # it reads the run with its kernel, which may be the user's FreeCAD
+        ended = launcher.run(words, module="articad.runs.drawing", limits=limits, environment=own)
         reason = None if ended.code == 0 else ended.last_line
     for drawing in wanted:
         folder = cache.get(drawing.key)

@@ -73,6 +73,8 @@ def test_a_prompt_becomes_an_editable_document_and_replays(
     run = Run.view(made)
     assert set(run.exports()) == {"urdf", "freecad"}
     assert {path.parent.name for path in made.glob("parts/*/part.FCStd")} == {"plate", "flap"}
+    views = {path.parents[1].name for path in made.glob("parts/*/views/*.png")}
+    assert views == {"plate", "flap"}  # a process of its own that needs FreeCAD, too, draws them
     (document,) = made.glob("export/freecad/*.FCStd")
     before, after = opened.steps(document.read_bytes(), {"do": "look"}, {"do": "set", "values": {"lift": 4.0}})
     assert before["articad"] is False
