@@ -15,6 +15,7 @@ from articad.agents.design import DOUBTS, Designer, listed
 from articad.agents.evidence import Evidence, examine
 from articad.agents.inspection import Verdict, inspect, verdict_of
 from articad.agents.llm import Image, closed_port
+from articad.agents.orders import APART
 from articad.agents.part_builder import PartBuilder, PartsError
 from articad.agents.pictures import offence_picture
 from articad.agents.requirements import Requirements, analyse
@@ -185,7 +186,7 @@ class Line:
             evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
         self.builder.announce("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
-        doubts = Findings(finding for finding in assembly.findings if finding.code in DOUBTS)
+        doubts = Findings([*assembly.findings.of(*DOUBTS), *evidence.joints.of(APART)])
         verdict = verdict_of(evidence, number)
         if not self.options.get("inspection", False):
             return evidence, replace(verdict, findings=verdict.findings + doubts)

@@ -8,6 +8,8 @@ Decided by proof, from the bores, pins, sockets and balls of joints and from the
 - if it alone is ordered with a clearance, and the surfaces of both parts touch where a fit demands a gap;
 - if such a bore takes its pin, but is closed at a depth that its dimensions do not give, or at both ends, so that no pin could go in;
 - if of the slot and the tongue of a slider, which would have play, one alone lies beside the axis at a distance that no dimension states;
+- if of two holes of a fixed joint that should meet, one alone is at a place that its dimensions do not give, and they give the place where it
+  would meet the other;
 - if its shape, mirrored, turned or shifted as a whole, has no fault (`misplaced`), and the faults are not those of a pin that is where it was
   ordered and too thick for its bore.
 
@@ -30,6 +32,7 @@ from typing import Any, Final, NamedTuple, Self
 import numpy as np
 
 from articad.agents.misplaced import misplaced
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.errors import ArticadError
 from articad.findings import Finding, Findings
@@ -42,13 +45,15 @@ from articad.plan.fields import lengths_in
 from articad.plan.resolve import Fit, ResolvedPlan
 from articad.plan.usage import CLEARANCE
 from articad.realisation.bores import TILT, along, beside
+from articad.realisation.holes import Hole, HolesApart, holes_apart, point_text
 from articad.realisation.sides import Sides, sides
 from articad.realisation.slots import Between, Slot, slots_of
 
-__all__ = ["FITS", "HELD", "addressed", "as_built", "source_of"]
+__all__ = ["APART", "FITS", "HELD", "addressed", "as_built", "source_of"]
 
 FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
-HELD: Final = frozenset({"W_JOINT_NOT_MADE", "W_JOINT_PARTLY_MADE", "W_JOINT_LEAVES", "W_JOINT_SHORT"})
+APART: Final = "W_HOLES_APART"
+HELD: Final = frozenset({"W_JOINT_NOT_MADE", "W_JOINT_PARTLY_MADE", "W_JOINT_LEAVES", "W_JOINT_SHORT", APART})
 """Codes of joints that surfaces do not make."""
 _CODES: Final = FITS | HELD | {"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FLOATING", "E_NOT_TOUCHING"}
 _CUT: Final = frozenset({"unbored_hole", "missing_slot"})  # causes that a cut mends: one that was ordered, or one that must be
@@ -64,6 +69,8 @@ _ASIDE_MM: Final = 0.05  # of a tongue beside its slot, beyond their play
 _OUT_OF_PROPORTION: Final = 5.0  # a length over the longest other one of its part, or a clearance over the shortest one
 _OF_ROUND: Final = re.compile(r"radius|diameter|bore|hole|pin|shaft|arbor|axle|spigot|socket|ball|thread")
 _OF_FLAT: Final = re.compile(r"width|height|length|thick|depth|wall|board|gap|pitch|(^|_)[xyz](_|$)")
+_OF_HOLE: Final = re.compile(r"screw|hole|bolt|thread|tap|dowel|rivet|fix|mount|pitch|spacing|distance|(^|_)[xyz](_|$)")
+_NUMBER: Final = re.compile(r"\d+(?:\.\d+)?")
 _WORDS: Final = {"cylinder": ("bore", "pin"), "sphere": ("socket", "ball")}
 
 
@@ -88,18 +95,20 @@ class _Round(NamedTuple):
 
 
 class _Joined(NamedTuple):
-    """A joint with the faces of both sides, its bores with their pins or sockets with their balls, and the slots of a slider."""
+    """A joint with the faces of both sides, its bores with their pins or sockets with their balls, the slots of a slider, and holes of a fixed joint."""
 
     joint: Joint
     sides: Sides
     fits: tuple[tuple[_Round, _Round], ...]
     slots: tuple[Slot, ...]
+    holes: tuple[HolesApart, ...]
 
     @classmethod
-    def of(cls, scene: Scene, joint: Joint) -> Self:
+    def of(cls, assembly: Assembly, scene: Scene, joint: Joint) -> Self:
         both = sides(scene, joint)
         fits = tuple(_mating(both))
-        return cls(joint, both, fits, tuple(slots_of(both)) if joint.type is JointType.SLIDER and not fits else ())
+        holes = tuple(holes_apart(scene, assembly.at(), joint))
+        return cls(joint, both, fits, tuple(slots_of(both)) if joint.type is JointType.SLIDER and not fits else (), holes)
 
     @property
     def parts(self) -> frozenset[str]:
@@ -120,7 +129,7 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
     pairs = {frozenset(finding.parts) for finding in several if finding.code in _CODES and len(finding.parts) == 2}
     if assembly.resolved is None or not pairs:
         return Findings(several)
-    joined = [_Joined.of(scene, joint) for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
+    joined = [_Joined.of(assembly, scene, joint) for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
     departed = _touching(several, assembly.resolved, joined) | _departed(assembly, assembly.resolved, joined)
     joints = [one.joint for one in joined]
     departed = {source: why for source, why in departed.items() if not _follows_otherwise(source, assembly, assembly.resolved, joints)}
@@ -138,6 +147,7 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
         for one in several
         if one.where in by_fit
     }
+    fitting |= {f"joints.{one.joint.name}": _moving(one.holes, assembly.resolved) for one in joined if one.holes}
     told = [
         _addressed(finding, between.get(finding.where, finding.parts), assembly.resolved, departed, unmeasured, fitting)
         for finding in several
@@ -225,9 +235,8 @@ def _departed(assembly: Assembly, resolved: ResolvedPlan, joined: Sequence[_Join
             else:
                 continue
             found.setdefault(source, reason)
-        for side, reason in _aside(one, resolved):
-            source = source_of(side.part, resolved)
-            found.setdefault(source, f"The {reason} of {source} in joint {one.joint.name!r}, which its dimensions do not give.")
+        for part, reason in _beside(one, resolved):
+            found.setdefault(source_of(part, resolved), reason)
     return found
 
 
@@ -240,7 +249,9 @@ def _follows_otherwise(source: str, assembly: Assembly, resolved: ResolvedPlan, 
             continue
         assert other.resolved is not None
         scene, names = other.scene(), {joint.name for joint in joints}
-        if source not in _departed(other, other.resolved, [_Joined.of(scene, joint) for joint in other.joints if joint.name in names]):
+        if source not in _departed(
+            other, other.resolved, [_Joined.of(other, scene, joint) for joint in other.joints if joint.name in names]
+        ):
             return True
     return False
 
@@ -253,6 +264,16 @@ def _out_of_proportion(resolved: ResolvedPlan, source: str) -> Iterator[tuple[st
         limit = min(others, default=math.inf) if CLEARANCE.search(address) else max(others, default=math.inf)
         if abs(value) > _OUT_OF_PROPORTION * limit:
             yield address, value
+
+
+def _beside(joined: _Joined, resolved: ResolvedPlan) -> Iterator[tuple[str, str]]:
+    """Yield the part with a slot, a tongue or a hole of a joint at a place that its dimensions do not give, and what is so."""
+    name = joined.joint.name
+    for side, reason in _aside(joined, resolved):
+        yield side.part, f"The {reason} of {source_of(side.part, resolved)} in joint {name!r}, which its dimensions do not give."
+    for hole in _misplaced_holes(joined.holes, resolved):
+        which = f"The hole of {hole.diameter:.4g} mm of {hole.part} in joint {name!r}"
+        yield hole.part, f"{which} is at {point_text(hole.place)}; its dimensions give {point_text(hole.partner)}."
 
 
 def _aside(joined: _Joined, resolved: ResolvedPlan) -> Iterator[tuple[Between, str]]:
@@ -309,9 +330,9 @@ def _addressed(
         culprit = finding.where.removeprefix("parts.")
         follows = f"As far as it can be measured, the script of {culprit} follows its order, so the order is at fault"
         return replace(finding, route="design", hint=f"{follows}: {finding.hint[0].lower()}{finding.hint[1:]}")
-    if len(parts) != 2 or frozenset(parts) in unmeasured:
+    if len(parts) != 2 or (frozenset(parts) in unmeasured and finding.code != APART):
         return finding
-    numbers = fitting.get(finding.where, "") if finding.code in FITS else ""
+    numbers = fitting.get(finding.where, "") if finding.code in FITS | {APART} else ""
     return replace(finding, route="design", hint=f"{numbers} {finding.hint}".strip())
 
 
@@ -356,6 +377,56 @@ def as_built(finding: Finding, fit: Fit) -> dict[str, Any]:
         return {}
     low, high = math.floor(100 * finding.value) / 100, math.ceil(100 * finding.value) / 100
     return {"gap_mm": [min(least, low), max(most or 0.0, high)]}
+
+
+def _misplaced_holes(several: Iterable[HolesApart], resolved: ResolvedPlan) -> Iterator[Hole]:
+    """Yield each hole that alone of its pair is at a place that the dimensions of its part do not give, where they give the other place."""
+    for apart in several:
+        strange = []
+        for hole in (apart.parent, apart.child):
+            differing = np.flatnonzero(np.abs(hole.place - hole.partner) > _ROUNDING_MM).tolist()
+            if not _is_place(hole.place, differing, hole.part, resolved) and _is_place(hole.partner, differing, hole.part, resolved):
+                strange.append(hole)
+        if len(strange) == 1:
+            yield strange[0]
+
+
+def _is_place(place: FloatArray, coordinates: Sequence[int], name: str, resolved: ResolvedPlan) -> bool:
+    """Return whether dimensions of a part, or numbers of its description, give coordinates of a point, from its origin or from a connector."""
+    part = resolved.parts[source_of(name, resolved)]
+    origins = [np.zeros(3), *(connector.frame.translation for connector in resolved.parts[name].connectors.values())]
+    said = {f"said {k}": float(number) for k, number in enumerate(_NUMBER.findall(part.description))}
+    stated = {**part.dimensions, **said}
+    return all(any(_is_given(2 * abs(float(place[k] - origin[k])), stated, twice=True) for origin in origins) for k in coordinates)
+
+
+def _moving(several: Iterable[HolesApart], resolved: ResolvedPlan) -> str:
+    """Return the dimensions that move a hole to the one that it should meet, of the first pair that has some."""
+    for apart in several:
+        offers = [offer for hole in (apart.child, apart.parent) if (offer := _moved(hole, resolved))]
+        if offers:
+            return f"Set {', or '.join(offers)}."
+    return ""
+
+
+def _moved(hole: Hole, resolved: ResolvedPlan) -> str:
+    """Return new values of the dimensions that are the coordinates of a hole, or twice as much, and must change; empty if one is none."""
+    source, offers = source_of(hole.part, resolved), []
+    lengths = lengths_in(resolved.parts[source].dimensions)
+    for old, new in zip(hole.place, hole.partner, strict=True):
+        if abs(old - new) < _ROUNDING_MM:
+            continue
+        stated = [
+            (not _OF_HOLE.search(name), times, name)
+            for name, value in lengths.items()
+            for times in (1, 2)
+            if old * new > 0 and abs(times * abs(old) - value) < _ROUNDING_MM
+        ]
+        if not stated:
+            return ""
+        _, times, name = min(stated)
+        offers.append(f"parts.{source}.dimensions.{name} to {times * abs(new):.6g}")
+    return " and ".join(offers)
 
 
 def _mating(both: Sides) -> Iterator[tuple[_Round, _Round]]:

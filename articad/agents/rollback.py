@@ -13,7 +13,7 @@ from typing import Any, Final, Literal
 
 from articad.agents.design import DOUBTS
 from articad.agents.llm import LLM, system, user
-from articad.agents.orders import source_of
+from articad.agents.orders import APART, source_of
 from articad.agents.prompts import prompt
 from articad.agents.replies import ReplyForm, ask, reader, schema_of, unusable
 from articad.findings import Finding, Findings
@@ -86,12 +86,11 @@ class Router:
         self._tried: dict[_Signature, list[str]] = {}
 
     def due(self, findings: Iterable[Finding]) -> list[Finding]:
-        """Return the findings to be routed: errors, and once each the plan's doubtful numbers and an inspector's complaints about its entries."""
+        """Return the findings to be routed: errors, and once each doubtful numbers, an inspector's complaints about entries, and holes that do not meet."""
         return [
             finding
             for finding in findings
-            if finding.severity == "error"
-            or (_is_opinion(finding) and finding.route == "design" and _signature(finding) not in self._tried)
+            if finding.severity == "error" or (_is_due_once(finding) and _signature(finding) not in self._tried)
         ]
 
     def decide(self, number: int, findings: Iterable[Finding], resolved: ResolvedPlan, scripts: Mapping[str, bytes]) -> Repair:
@@ -186,8 +185,10 @@ def _culprit(finding: Finding, resolved: ResolvedPlan) -> str | None:
     return source_of(bored.pop(), resolved) if len(bored) == 1 else None
 
 
-def _is_opinion(finding: Finding) -> bool:
-    return finding.code.startswith("W_LOOK_") or finding.code in DOUBTS
+def _is_due_once(finding: Finding) -> bool:
+    """Return whether a finding is a warning that someone must answer once."""
+    is_opinion = finding.code.startswith("W_LOOK_") or finding.code in DOUBTS
+    return finding.code == APART or (is_opinion and finding.route == "design")
 
 
 def _signature(finding: Finding) -> _Signature:

@@ -563,6 +563,12 @@ CODES: dict[str, Code] = {
     "W_JOINT_SHORT": Code(
         "fit", "design", "A slide has too little of its guide engaged at an end of its range.", "Lengthen the guide, or shorten the travel."
     ),
+    "W_HOLES_APART": Code(
+        "fit",
+        "design",
+        "Holes of two parts that are fixed to each other should meet where their faces touch, and each faces solid material.",
+        "Move one of the two to the named place.",
+    ),
     # --- model
     "E_REPLY_SCHEMA": Code(
         "model",

@@ -24,6 +24,7 @@ from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.realisation.contacts import FaceReach, Pair, pairs
 from articad.realisation.holders import Holders, HoldingChain
+from articad.realisation.holes import TOUCH_MM, lost_holes
 from articad.realisation.room import FAR_RAD, GROUND, Rise, Touch, far_mm, room
 from articad.realisation.sides import PartFace, Sides, sides
 from articad.realisation.stops import Stops
@@ -33,7 +34,6 @@ __all__ = ["LEAST_SHARE", "OWN", "FreeWay", "JointCheck", "JointVerdict", "Reali
 LEAST_SHARE: Final = 0.25  # of a guide that a slide keeps engaged at the ends of its range
 _ROUNDING = 1e-6  # of a share
 TILT_RAD: Final = 0.15  # a body that may tilt by less is held
-TOUCH_MM: Final = 0.05  # surfaces of a fixed joint this close are one
 _FLAT_MM, _FLAT_SHARE, _FLAT_MOST = 1.0, 0.01, 5.0  # reach of planes: the larger of the two; the share is of the child's diagonal
 _ROUND_MM, _ROUND_SHARE = 0.5, 0.1  # reach of cylinders and spheres; the share is of the radius
 _UP = 0.9  # cosine: a direction in which the weight holds a part
@@ -139,7 +139,7 @@ class Realisation:
     """How the joints of an assembly are made.
 
     Attributes:
-        findings: One for each joint that is not made, or lost in motion; all are warnings.
+        findings: One for each joint that is not made, or lost in motion, and for each fixed one whose holes do not meet; all are warnings.
         rows: One for each joint, in order.
     """
 
@@ -174,7 +174,8 @@ def check_joints(
     holders = Holders(scene, poses)
     judged = [joint for joint in scene.relations.joints if joints is None or joint.name in joints]
     rows = [_Examined(scene, poses, joint).row(reached or {}, holders) for joint in judged]
-    return Realisation(Findings(finding for row in rows for finding in _findings(row)), tuple(rows))
+    lost = (finding for joint in judged for finding in lost_holes(scene, poses, joint))
+    return Realisation(Findings([*(finding for row in rows for finding in _findings(row)), *lost]), tuple(rows))
 
 
 class _Examined:

@@ -14,6 +14,7 @@ from articad.agents.llm import Reply, Request, Scripted
 from articad.agents.misplaced import Misplaced
 from articad.agents.pipeline import generate
 from articad.assembly import Assembly
+from articad.findings import Finding
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 from articad_bench.obeying import followed
@@ -387,3 +388,89 @@ def test_a_slot_beside_its_way_is_its_authors(aside: float) -> None:
 
     assert {(finding.route, finding.where) for finding in found} == {("code", "parts.carriage")}
     assert f"the slot is {abs(aside):.4g} mm beside the axis" in found[0].hint
+
+
+# A finger that is screwed on a jaw: two tapped holes, two through holes.
+JAW = """
+from build123d import Align, Box, Cylinder, Pos
+
+HIGH = (Align.CENTER, Align.CENTER, Align.MAX)
+
+def build(part):
+    d = part.dimensions
+    shape = Box(d["length"], d["width"], d["height"], align=HIGH)
+    for x in (d["near"], d["far"]):
+        shape -= Pos(x, 0, 0) * Cylinder(d["screw"], d["depth"], align=HIGH)
+    return shape, dict(part.connectors)
+"""
+FINGER = """
+from build123d import Align, Box, Cylinder, Pos
+
+LOW = (Align.CENTER, Align.CENTER, Align.MIN)
+
+def build(part):
+    d = part.dimensions
+    shape = Box(d["length"], d["width"], d["height"], align=LOW)
+    for x in (d["near"], d["far"]):
+        shape -= Pos(x, 0, 0) * Cylinder(d["screw"], d["height"], align=LOW)
+    return shape, dict(part.connectors)
+"""
+ELSEWHERE = FINGER.replace('d["far"])', 'd["far"] - 3.77)')
+
+
+def finger_on_a_jaw(jaw: float = 20.3, finger: float = 20.3) -> dict[str, Any]:
+    """A plan that orders the second screw of both parts at x = 20.3."""
+    seat = {"name": "seat", "o": [0, 0, 0], "z": [0, 0, 1], "x": [1, 0, 0], "label": "seat"}
+    sizes = {
+        "jaw": {"length": 71, "width": 18, "height": 23, "depth": 12.4, "near": 5.1, "far": jaw, "screw": 1.65},
+        "finger": {"length": 63, "width": 16, "height": 9, "near": 5.1, "far": finger, "screw": 2.25},
+    }
+    parts = [{"name": name, "description": "A block.", "dimensions": own, "connectors": [seat]} for name, own in sizes.items()]
+    parts[1]["rest_pose"] = {"at": [0, 0, 0]}
+    fixed = {"name": "screwed", "type": "fixed", "parent": "jaw.seat", "child": "finger.seat"}
+    return plan("gripper", parts, fixed) | {"freedoms": 0}
+
+
+def screwed(document: dict[str, Any], finger: str = FINGER) -> tuple[Finding, ...]:
+    scripts = {"jaw": JAW, "finger": finger}
+    made = Assembly.from_plan(AssemblyPlan.from_json(document), scripts, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1)
+    return examine(made).findings.of("W_HOLES_APART")
+
+
+def test_holes_ordered_apart_are_the_designers_with_each_number_that_makes_them_meet() -> None:
+    assert screwed(finger_on_a_jaw()) == ()
+    (found,) = screwed(finger_on_a_jaw(finger=25.3))
+    assert (found.route, found.where) == ("design", "joints.screwed")
+    assert "Set parts.finger.dimensions.far to 20.3, or parts.jaw.dimensions.far to 25.3." in found.hint
+    assert screwed(finger_on_a_jaw(jaw=25.3, finger=25.3)) == ()
+
+
+def test_a_hole_where_its_dimensions_do_not_put_it_is_its_authors() -> None:
+    (found,) = screwed(finger_on_a_jaw(), ELSEWHERE)
+    assert (found.route, found.where) == ("code", "parts.finger")
+    assert "is at (16.53, 0, 0); its dimensions give (20.3, 0, 0)" in found.hint
+
+
+def gripper(document: dict[str, Any], finger: str, **answers: str) -> Scripted:
+    script = {"requirements": stories.requirements("gripper"), "design/1": json.dumps(document)} | watched()
+    script |= {"part/jaw/1": fenced(JAW), "part/finger/1": fenced(finger)}
+    return Scripted(script | {step.replace("__", "/"): answer for step, answer in answers.items()})
+
+
+def test_holes_apart_are_asked_about_once_and_may_stay(tmp_path: Path) -> None:
+    llm = gripper(finger_on_a_jaw(finger=25.3), FINGER, design__2='{"changes": {}}')
+    run = made(tmp_path, llm)
+    assert [step for step in llm.steps if step.startswith("design")] == ["design/1", "design/2"]
+    assert [finding["code"] for finding in (run.verdict() or {})["findings"]] == ["W_HOLES_APART"]
+
+
+def test_a_hole_that_departs_from_its_order_is_asked_of_its_author_once(tmp_path: Path) -> None:
+    llm = gripper(finger_on_a_jaw(), ELSEWHERE, part__finger__2=fenced(FINGER))
+    run = made(tmp_path, llm)
+    assert [step for step in llm.steps if step.startswith(("design", "part"))] == [
+        "design/1",
+        "part/jaw/1",
+        "part/finger/1",
+        "part/finger/2",
+    ]
+    assert [finding["code"] for finding in (run.verdict() or {})["findings"]] == []

@@ -15,6 +15,13 @@ from tests.realisation.test_bores import scene
 from tests.realisation.test_verdicts import BALL, carriage, hinge, judged, socket
 
 TURN: dict[str, Any] = {"lower": (-1.0,), "upper": (1.0,)}
+
+
+def screwed(z: float, x: float) -> Any:
+    """A plate with a hole for a screw."""
+    return Pos(0, 0, z) * (Box(40, 40, 10) - Pos(x, 0, 0) * Cylinder(2, 10))
+
+
 BLOCKS = {"a": Pos(0, 0, -25) * Box(20, 20, 4), "b": Pos(0, 24, 0) * Box(4, 30, 40)}
 
 # code, joint, shapes and limits with the fault; for each wording of the hint, shapes and limits as its reader makes them
@@ -64,6 +71,16 @@ CASES: list[tuple[str, str, dict[str, Any], dict[str, Any], dict[str, tuple[dict
         {
             "Lengthen the guide": (carriage(length=120.0), {"lower": (0.0,), "upper": (40.0,)}),
             "or shorten the travel": (carriage(), {"lower": (0.0,), "upper": (30.0,)}),
+        },
+    ),
+    (
+        "W_HOLES_APART",
+        "fixed",
+        {"a": screwed(-5, 0), "b": screwed(5, 4)},
+        {},
+        {
+            "Move the hole of b to": ({"a": screwed(-5, 0), "b": screwed(5, 0)}, {}),
+            "or that of a to": ({"a": screwed(-5, 4), "b": screwed(5, 4)}, {}),
         },
     ),
 ]
