@@ -30,6 +30,7 @@ _REACH_MM: Final = 6.0  # beyond the larger diameter: axes of two holes that sho
 _EDGE: Final = 1e-6  # of barycentric coordinates
 _AROUND: Final = 32  # points of a rim
 _OPEN_RAD: Final = 1.2  # largest angle that a face may leave out of a full circle
+_FLARE: Final = 1.8  # by which a chamfer widens a hole at most, over its depth: a cone of 120°
 _SAME_MM: Final = 0.02  # axes this close are one
 _THREAD: Final = 0.7  # of a hole's radius: least radius of what fills it
 
@@ -67,21 +68,22 @@ class HolesApart(NamedTuple):
 
 
 class _Opening(NamedTuple):
-    """A hole in the frame of the parent: where its axis meets the plane `(3,)`, its radius there, its least one, and its depth [mm]."""
+    """A hole in the frame of the parent: where its axis meets the plane `(3,)`, its first radius, its least one, its depth, and how deep its chamfer is [mm]."""
 
     point: FloatArray
     radius: float
     least: float
     depth: float
+    chamfer: float
 
     def allows(self, other: _Opening) -> float:
         """Return the largest distance of the axes at which two holes meet [mm]."""
         return abs(self.least - other.least) + COAXIAL_MM
 
     def is_met_by(self, other: _Opening) -> bool:
-        """Return whether two holes meet: they have one axis, or this one opens inside one that is far wider."""
+        """Return whether two holes meet: they have one axis, or this one opens inside one of another kind."""
         apart = float(np.linalg.norm(self.point - other.point))
-        return apart <= self.allows(other) or (other.least > _ALIKE * self.radius and apart + self.radius <= other.radius)
+        return apart <= self.allows(other) or (not self.is_like(other) and apart + self.radius <= other.radius)
 
     def is_like(self, other: _Opening) -> bool:
         return max(self.least, other.least) <= _ALIKE * min(self.least, other.least)
@@ -178,15 +180,16 @@ def _openings(faces: Sequence[Face], planes: Sequence[Face], way: FloatArray, to
             known = [group for at, group in walls if np.linalg.norm(at - point) <= _SAME_MM]
             known[0].append(face) if known else walls.append((point, [face]))
     for point, group in walls:
-        bottom, radius, least = height, 0.0, np.inf
+        bottom, radius, least, chamfer = height, 0.0, np.inf, 0.0
         for face in sorted(group, key=lambda one: -along(one, way)[1]):
             low, high = along(face, way)
             same = [one for one in group if abs(one.radius - face.radius) < _SAME_MM]
             if high > height + touch or bottom - high > max(touch, face.radius) or not _is_full(same):
                 continue
+            chamfer = chamfer if radius else height - high
             bottom, radius, least = min(bottom, low), radius or face.radius, min(least, face.radius)
         if radius and not _covers(planes, point[None], way).any():
-            yield _Opening(point, radius, float(least), height - bottom)
+            yield _Opening(point, radius, float(least), height - bottom, chamfer)
 
 
 def _is_full(walls: Sequence[Face]) -> bool:
@@ -207,7 +210,7 @@ def _faces_solid(hole: _Opening, planes: Sequence[Face], others: Sequence[_Openi
     rim = hole.point + hole.radius * (np.cos(angles)[:, None] * x + np.sin(angles)[:, None] * np.cross(normal, x))
     covered = _covers(planes, rim, normal)
     for other in others:
-        covered |= np.linalg.norm(rim - other.point, axis=1) <= other.radius + COAXIAL_MM
+        covered |= np.linalg.norm(rim - other.point, axis=1) <= other.radius + _FLARE * max(other.chamfer, 0.0) + COAXIAL_MM
     return bool(covered.all())
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from build123d import Box, Cone, Cylinder, Pos, Rot
+from build123d import Box, Cone, Cylinder, Pos, RectangleRounded, Rot, extrude
 
 from articad.findings import Finding
 from tests.interference.mechanisms import at, fixed, random_rotation
@@ -70,7 +70,9 @@ def test_holes_that_meet_are_no_finding(kind: str) -> None:
     assert found(block(places), plate(places, kind), seed=1) == ()
 
 
-@pytest.mark.parametrize(("kind", "moved"), [*zip(KINDS, (1.0, 1.5, 2.5, 4.0, 6.0, 8.0), strict=True), ("through", 8.0), ("blind", 1.0)])
+@pytest.mark.parametrize(
+    ("kind", "moved"), [*zip(KINDS, (1.0, 1.5, 2.5, 4.0, 6.0, 8.0), strict=True), ("through", 8.0), ("blind", 1.0), ("chamfered", 1.5)]
+)
 def test_a_hole_that_is_moved_is_found(kind: str, moved: float) -> None:
     at_block, at_plate = pattern(np.random.default_rng(10 * KINDS.index(kind) + round(moved)), moved)
     (one,) = found(block(at_block), plate(at_plate, kind), seed=2)
@@ -104,11 +106,12 @@ NO_PARTNER = {
     "weight saved in the plate alone": (BLOCK, plate([(-20, 0), (20, 0)])),
     "holes far from each other": (block([(-30, -20)]), plate([(30, 20)])),
     "a large opening and a small hole beside it": (block([(0, 0)]), PLATE - Pos(9, 0, 4) * Cylinder(6, 8)),
-    "small holes inside a large opening": (block([(-5, 0), (5, 0)]), PLATE - Cylinder(12, 30)),
+    "small holes inside a large opening": (block([(8, 0)]), plate([(17, 0)]) - Cylinder(12, 8) - Cylinder(4, 30)),
+    "rounded corners of a pocket": (block([(20, 0)]), PLATE - Pos(0, 0, 4) * extrude(RectangleRounded(30, 20, 3), 4, both=True)),
     "a screw in a slot": (block([(-4, 0), (20, 0)]), plate([(20, 0)]) - Pos(0, 0, 4) * (Box(12, 4.5, 8) + Pos(6, 0, 0) * Cylinder(2.25, 8) + Pos(-6, 0, 0) * Cylinder(2.25, 8))),
     "a hole beyond the contact": (block([(0, 0)]), Pos(-54, 0, 0) * plate([(46, 0)])),
     "play of the screw": (block([(0, 0)]), plate([(0.55, 0)])),
-    "cavities inside": (BLOCK - Pos(0, 0, -10) * Cylinder(3, 10), PLATE - Pos(5, 0, 4) * Cylinder(3, 4)),
+    "cavities inside": (BLOCK - Pos(0, 0, -6) * Cylinder(3, 10), PLATE - Pos(5, 0, 3) * Cylinder(3, 4)),
     "holes across": (BLOCK - Pos(0, 0, -10) * Rot(X=90) * Cylinder(3, 100), PLATE - Pos(4, 0, 4) * Rot(X=90) * Cylinder(3, 100)),
     "plates apart": (block([(0, 0)]), Pos(0, 0, 1) * plate([(5, 0)])),
 }  # fmt: skip
