@@ -394,7 +394,7 @@ def _misplaced_holes(several: Iterable[HolesApart], resolved: ResolvedPlan) -> I
 def _is_place(place: FloatArray, coordinates: Sequence[int], name: str, resolved: ResolvedPlan) -> bool:
     """Return whether dimensions of a part, or numbers of its description, give coordinates of a point, from its origin or from a connector."""
     part = resolved.parts[source_of(name, resolved)]
-    origins = [np.zeros(3), *(connector.frame.translation for connector in resolved.parts[name].connectors.values())]
+    origins = _origins(name, resolved)
     said = {f"said {k}": float(number) for k, number in enumerate(_NUMBER.findall(part.description))}
     stated = {**part.dimensions, **said}
     return all(any(_is_given(2 * abs(float(place[k] - origin[k])), stated, twice=True) for origin in origins) for k in coordinates)
@@ -410,23 +410,29 @@ def _moving(several: Iterable[HolesApart], resolved: ResolvedPlan) -> str:
 
 
 def _moved(hole: Hole, resolved: ResolvedPlan) -> str:
-    """Return new values of the dimensions that are the coordinates of a hole, or twice as much, and must change; empty if one is none."""
-    source, offers = source_of(hole.part, resolved), []
+    """Return new values of the dimensions that are coordinates of a hole, or twice as much, and must change; empty if one coordinate has none."""
+    source = source_of(hole.part, resolved)
     lengths = lengths_in(resolved.parts[source].dimensions)
-    for old, new in zip(hole.place, hole.partner, strict=True):
-        if abs(old - new) < _ROUNDING_MM:
-            continue
+    differing = np.flatnonzero(np.abs(hole.place - hole.partner) > _ROUNDING_MM).tolist()
+    for origin in _origins(hole.part, resolved):
+        old, new = hole.place - origin, hole.partner - origin
         stated = [
-            (not _OF_HOLE.search(name), times, name)
-            for name, value in lengths.items()
-            for times in (1, 2)
-            if old * new > 0 and abs(times * abs(old) - value) < _ROUNDING_MM
+            [
+                (not _OF_HOLE.search(name), times, name, times * abs(float(new[k])))
+                for name, value in lengths.items()
+                for times in (1, 2)
+                if old[k] * new[k] > 0 and abs(times * abs(old[k]) - value) < _ROUNDING_MM
+            ]
+            for k in differing
         ]
-        if not stated:
-            return ""
-        _, times, name = min(stated)
-        offers.append(f"parts.{source}.dimensions.{name} to {times * abs(new):.6g}")
-    return " and ".join(offers)
+        if all(stated):
+            return " and ".join(f"parts.{source}.dimensions.{name} to {value:.6g}" for *_, name, value in map(min, stated))
+    return ""
+
+
+def _origins(name: str, resolved: ResolvedPlan) -> list[FloatArray]:
+    """Return the points of a part from which its dimensions may count, `(3,)` each in its frame [mm]."""
+    return [np.zeros(3), *(connector.frame.translation for connector in resolved.parts[name].connectors.values())]
 
 
 def _mating(both: Sides) -> Iterator[tuple[_Round, _Round]]:

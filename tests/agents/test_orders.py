@@ -415,18 +415,19 @@ def build(part):
         shape -= Pos(x, 0, 0) * Cylinder(d["screw"], d["height"], align=LOW)
     return shape, dict(part.connectors)
 """
+BESIDE_ITS_SEAT = FINGER.replace("    return shape", "    return Pos(7, 0, 0) * shape")
 ELSEWHERE = FINGER.replace('d["far"])', 'd["far"] - 3.77)')
 
 
-def finger_on_a_jaw(jaw: float = 20.3, finger: float = 20.3) -> dict[str, Any]:
-    """A plan that orders the second screw of both parts at x = 20.3."""
-    seat = {"name": "seat", "o": [0, 0, 0], "z": [0, 0, 1], "x": [1, 0, 0], "label": "seat"}
+def finger_on_a_jaw(jaw: float = 20.3, finger: float = 20.3, seat: float = 0.0) -> dict[str, Any]:
+    """A plan that orders the second screw of both parts 20.3 beside their seats."""
+    frame = {"name": "seat", "o": [0, 0, 0], "z": [0, 0, 1], "x": [1, 0, 0], "label": "seat"}
     sizes = {
         "jaw": {"length": 71, "width": 18, "height": 23, "depth": 12.4, "near": 5.1, "far": jaw, "screw": 1.65},
         "finger": {"length": 63, "width": 16, "height": 9, "near": 5.1, "far": finger, "screw": 2.25},
     }
-    parts = [{"name": name, "description": "A block.", "dimensions": own, "connectors": [seat]} for name, own in sizes.items()]
-    parts[1]["rest_pose"] = {"at": [0, 0, 0]}
+    parts = [{"name": name, "description": "A block.", "dimensions": own, "connectors": [frame]} for name, own in sizes.items()]
+    parts[1] |= {"rest_pose": {"at": [-seat, 0, 0]}, "connectors": [frame | {"o": [seat, 0, 0]}]}
     fixed = {"name": "screwed", "type": "fixed", "parent": "jaw.seat", "child": "finger.seat"}
     return plan("gripper", parts, fixed) | {"freedoms": 0}
 
@@ -443,6 +444,12 @@ def test_holes_ordered_apart_are_the_designers_with_each_number_that_makes_them_
     assert (found.route, found.where) == ("design", "joints.screwed")
     assert "Set parts.finger.dimensions.far to 20.3, or parts.jaw.dimensions.far to 25.3." in found.hint
     assert screwed(finger_on_a_jaw(jaw=25.3, finger=25.3)) == ()
+
+
+def test_a_hole_is_measured_from_the_seat_of_its_part_too() -> None:
+    (found,) = screwed(finger_on_a_jaw(finger=25.3, seat=7.0), BESIDE_ITS_SEAT)
+    assert found.route == "design"
+    assert "Set parts.finger.dimensions.far to 20.3, or parts.jaw.dimensions.far to 25.3." in found.hint
 
 
 def test_a_hole_where_its_dimensions_do_not_put_it_is_its_authors() -> None:
