@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
-from articad.agents import excerpt
+from articad.agents import excerpt, ranges
 from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import object_text, unusable
@@ -17,12 +17,14 @@ from articad.errors import OutputError, PlanError, ReadError
 from articad.findings import Finding, Findings
 from articad.plan.amending import amended
 from articad.plan.remedies import advised
+from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import RunRequest
 
 TRIES: Final = 5  # answers until a plan is valid; the findings of each go back to the model
 SHOWN_FINDINGS: Final = 40  # more at once are not read; the next answer brings the rest
-DOUBTS: Final = frozenset({"W_SCALE", "W_DENSITY", "W_DIMENSION_SIGN", "W_BORE_NARROW"})  # probably mistaken: asked about once each
+DOUBTS: Final = frozenset({"W_SCALE", "W_DENSITY", "W_DIMENSION_SIGN", "W_BORE_NARROW", "W_MOTION_RANGE"})
+"""Codes of what is probably mistaken: asked about once each."""
 ROLE: Final = "design"
 ANALYSIS: Final = "Its analysis, made before there was a plan (where numbers differ, what the request states binds, then the plan):"
 _TOOTHED: Final = re.compile(r"(?<![a-z])gear(?!box)|teeth|tooth|pinion|\bracks?\b|sprocket|\bcogs?\b", re.IGNORECASE)
@@ -141,6 +143,7 @@ class Designer:
         words = prompt("redesign", findings=listed(every), note=note)
         if pictures:
             words += "\n\nPictures of the places follow; what parts have in common is red."
+        self._doubted.update(map(_place, every))
         self._said = self._whole(plan)
         return self._until_valid(self._to_change(every, words, *pictures, anew=bool(came_back)))
 
@@ -178,6 +181,8 @@ class Designer:
             step = f"design/{self._answered}"
             reply = self._llm.complete(Request(ROLE, step, messages, response_schema(changes=bool(self._said))))
             plan, findings, problem = self._read(reply.text, step)
+            if plan is not None and findings.ok and not self._own_rules:
+                findings += ranges.planned(resolve(plan), self._requirements.motions)
             self._tell(plan, findings)
             if plan is not None and findings.ok:
                 doubts = [finding for finding in findings if finding.code in DOUBTS and _place(finding) not in self._doubted]

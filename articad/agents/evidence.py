@@ -13,7 +13,7 @@ from typing import Final
 
 from articad.agents.numbers import placed, short
 from articad.agents.orders import HELD, addressed
-from articad.agents.travel import travels
+from articad.agents.travel import told_travels, travels
 from articad.agents.trials import with_trials
 from articad.arrays import FloatArray
 from articad.assembly import Assembly, Poses
@@ -115,7 +115,7 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
         "",
         f"Mobility: {mechanism.mobility} freedoms. How far each joint goes, with one driver moved at a time (an endless one by a turn):",
     ]
-    lines += travels(assembly)
+    lines += told_travels(travels(assembly))
     lines += ["", "Bounding boxes at rest, in the assembly's frame (mm):"]
     lines += [f"- {name}: from {placed(low)} to {placed(high)}" for name, (low, high) in evidence.sizes.items()]
     fits = [row for row in evidence.checks.fits if isinstance(row, FitCheck)]

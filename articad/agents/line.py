@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Final, Protocol
 
-from articad.agents import brainstorm
+from articad.agents import brainstorm, ranges
 from articad.agents.brainstorm import Alternative
 from articad.agents.design import DOUBTS, Designer, listed
 from articad.agents.evidence import Evidence, examine
@@ -121,6 +121,10 @@ class Line:
         """Return the measurements of an assembly."""
         return examine(assembly)
 
+    def other_ranges(self, assembly: Assembly, requirements: Requirements) -> Findings:
+        """Return motions of the analysis that no joint makes."""
+        return ranges.built(assembly, requirements.motions)
+
     def finish(self, assembly: Assembly, evidence: Evidence, requirements: Requirements | None) -> None:
         """Review the result if requested, and write the exports."""
         if "review" in self.options:
@@ -137,6 +141,7 @@ class Line:
         """Note the findings of an answer of the planner."""
         for finding in findings:
             self.run.trace_finding(finding)
+        self.router.noted(findings.of("W_MOTION_RANGE"))
         what = "unreadable" if plan is None else f"{len(plan.parts)} parts, {len(plan.joints)} joints"
         self.builder.announce("design", f"{what}, {len(findings.errors)} errors")
 
@@ -185,8 +190,9 @@ class Line:
         with closed_port("assembly and checks are deterministic"):
             evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
+            stated = Findings([*assembly.findings.of(*DOUBTS), *evidence.joints.of(APART)])
+            doubts = stated + self.other_ranges(assembly, requirements)
         self.builder.announce("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
-        doubts = Findings([*assembly.findings.of(*DOUBTS), *evidence.joints.of(APART)])
         verdict = verdict_of(evidence, number)
         if not self.options.get("inspection", False):
             return evidence, replace(verdict, findings=verdict.findings + doubts)

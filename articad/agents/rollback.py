@@ -86,12 +86,17 @@ class Router:
         self._tried: dict[_Signature, list[str]] = {}
 
     def due(self, findings: Iterable[Finding]) -> list[Finding]:
-        """Return the findings to be routed: errors, and once each doubtful numbers, an inspector's complaints about entries, and holes that do not meet."""
+        """Return the findings to be routed: errors, and once each doubts about the plan, an inspector's complaints about entries, and holes that do not meet."""
         return [
             finding
             for finding in findings
             if finding.severity == "error" or (_is_due_once(finding) and _signature(finding) not in self._tried)
         ]
+
+    def noted(self, opinions: Iterable[Finding]) -> None:
+        """Take note of opinions that the designer has been told already: they are not due again."""
+        for finding in opinions:
+            self._tried.setdefault(_signature(finding), []).append("design")
 
     def decide(self, number: int, findings: Iterable[Finding], resolved: ResolvedPlan, scripts: Mapping[str, bytes]) -> Repair:
         """Decide who must act on a round's findings.

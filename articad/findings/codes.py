@@ -87,6 +87,12 @@ CODES: dict[str, Code] = {
     "W_DIMENSION_SIGN": Code(
         "plan", "design", "A dimension that is named as a size is negative.", "Make it positive, or name a place as one, such as hole_z."
     ),
+    "W_MOTION_RANGE": Code(
+        "plan",
+        "design",
+        "No joint goes about as far as the analysis of the request says that something moves.",
+        "Correct the limits of the joint, or keep them where the analysis is what is wrong.",
+    ),
     "E_NOT_SUPPORTED": Code(
         "plan", "design", "The plan is valid, but this version cannot solve it yet.", "Use a supported joint type or structure."
     ),

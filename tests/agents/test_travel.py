@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from articad.agents.travel import travels
+from articad.agents.travel import told_travels, travels
 from articad.assembly import Assembly
 from articad.connectors import SE3
 from articad.geometry.part import Part
@@ -16,6 +16,10 @@ from tests.assemblies import all_joint_kinds
 from tests.kinematics.linkages import joint
 
 CRANK, ROD = 30.0, 90.0  # mm
+
+
+def lines(moved: Assembly) -> list[str]:
+    return told_travels(travels(moved))
 
 
 def assembly(*joints: Joint, couplings: tuple[Coupling, ...] = ()) -> Assembly:
@@ -41,7 +45,7 @@ def press(rest: float) -> Assembly:
 
 @pytest.mark.parametrize("rest", [0.0, 0.8217])
 def test_what_follows_in_a_loop_is_told_with_its_stroke_wherever_the_crank_rests(rest: float) -> None:
-    told = travels(press(rest))
+    told = lines(press(rest))
 
     assert told[0] == "- crank: endless, drives"
     assert told[1] == "- big_end: turns 360 degrees in all, follows"
@@ -67,13 +71,13 @@ def test_what_a_coupling_moves_is_told_with_its_travel() -> None:
     at = SE3.trans
     pinion = joint("pinion", "revolute", ("body", at(0, 0, 0)), ("pinion", at(0, 0, 0)), limits=[(0.0, 1.5)])
     jaw = joint("jaw", "slider", ("body", at(0, 10, 0)), ("jaw", at(0, 0, 0)), limits=[(0.0, 30.0)])
-    told = travels(assembly(pinion, jaw, couplings=(Coupling("rack", "rack", "pinion", "jaw", 10.0, 0.0),)))
+    told = lines(assembly(pinion, jaw, couplings=(Coupling("rack", "rack", "pinion", "jaw", 10.0, 0.0),)))
 
     assert told == ["- pinion: 0 to 85.94 degrees, drives", "- jaw: 0 to 15 mm, follows"]
 
 
 def test_every_kind_of_joint_that_drives_is_told_in_degrees_and_mm() -> None:
-    told = travels(all_joint_kinds())
+    told = lines(all_joint_kinds())
 
     assert "- head: swivels to 60 degrees from its axis, every way, turns -57.3 to 28.65 degrees about it, drives" in told
     assert "- drawer: 10 to 200 mm, drives" in told
@@ -90,11 +94,11 @@ def test_a_ball_that_follows_is_told_by_how_far_it_tilts_and_turns(turned: float
     at, axis = SE3.identity(), SE3.rot_y(turned)
     hinge = joint("hinge", "revolute", ("base", axis), ("arm", axis), limits=[(-0.2, 0.4)], driver=True)
     ball = joint("ball", "ball", ("base", at), ("arm", at))
-    assert told in travels(assembly(hinge, ball))[1]
+    assert told in lines(assembly(hinge, ball))[1]
 
 
 def test_a_travel_is_told_to_a_hundredth_however_long_it_is() -> None:
     at = SE3.identity()
-    assert travels(assembly(joint("slide", "slider", ("base", at), ("tray", at), limits=[(-0.25, 1234.5)]))) == [
+    assert lines(assembly(joint("slide", "slider", ("base", at), ("tray", at), limits=[(-0.25, 1234.5)]))) == [
         "- slide: -0.25 to 1234.5 mm, drives"
     ]
