@@ -670,6 +670,7 @@ FROM_ELSEWHERE = {
     "W_SHAKY": "mechanism",
     "W_IDLE_FREEDOM": "mechanism",
     "I_REDUNDANT": "mechanism",
+    "W_MOTION_RANGE": "the analysis of a request: agents",
 }
 
 
