@@ -19,6 +19,7 @@ from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.kinematics.joints import Joint, JointType, Unit
 from articad.plan.resolve import ResolvedPlan
+from articad.texts import escaped
 
 __all__ = ["MotionSpan", "built", "planned", "spans_of"]
 
@@ -196,7 +197,7 @@ def _found(motions: Iterable[Motion], extents: Sequence[Extents]) -> Findings:
             continue
         alike.sort(key=lambda one: _likeness(motion, one.joint), reverse=True)
         name = alike[0].joint.name
-        unmet[name].append(" ".join(f"{motion.component} {motion.kind}, {motion.range}".split()))
+        unmet[name].append(escaped(" ".join(f"{motion.component} {motion.kind}, {motion.range}".split())))
         able.setdefault(name, alike)
     return Findings(_finding(told, able[name]) for name, told in unmet.items())
 

@@ -195,10 +195,10 @@ def test_a_motion_is_met_by_a_travel_within_a_quarter_of_one_of_its_spans(travel
 
 def test_what_several_motions_say_of_one_joint_is_one_finding() -> None:
     plan = resolve(AssemblyPlan.from_json(sliders(tray=10)))
-    found = ranges.planned(plan, [motion("upper tray", "0 to 100 mm"), motion("lower tray", "0 to\n 200 mm")])
+    found = ranges.planned(plan, [motion("upper tray", "0 to 100 mm"), motion("lower tray", "0 to\n 200 mm \x1b[2J")])
 
     assert [one.message for one in found] == [
-        "The analysis says: upper tray slides, 0 to 100 mm; lower tray slides, 0 to 200 mm. No joint has such a travel: tray goes 10 mm."
+        "The analysis says: upper tray slides, 0 to 100 mm; lower tray slides, 0 to 200 mm \\u001b[2J. No joint has such a travel: tray goes 10 mm."
     ]
     assert found[0].parts == ("tray",)
     assert found[0].route == "design"
