@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -154,6 +154,7 @@ class _Model:
         self.members = [item for item in self._held if self._is_part(item)]
         self.parts: dict[str, FreeCADObject] = {}  # by the name that the part has now
         self.recorded: dict[str, str] = {}  # name in the records -> name now
+        self._numbers: dict[str, int] = {}  # by label, below which all numbers are taken
         for item in self.members:
             self._take(item)
         self.names = {item: name for name, item in self.parts.items()}
@@ -164,6 +165,7 @@ class _Model:
         self._solids: dict[FreeCADObject, tuple[Solid | None, tuple[Shape, ...]]] = {}
         self._masses: dict[FreeCADObject, list[MassProperties | None]] = {}
         self._wrong: dict[FreeCADObject, list[Finding]] = {}  # what was said of a shape when it was read
+        self._asked: set[str] = set()  # parts of which it was said
         self._reader = BrepReader()
 
     def _top(self) -> FreeCADObject:
@@ -183,7 +185,7 @@ class _Model:
         given, label = item.text("ArticadPart") if self.records else "", item.text("Label") or item.name
         known = given and given not in self.recorded and (self.written is None or item.name in self.written)
         renamed = known and self.written is not None and self.written[item.name]["label"] != label
-        name = _free(given if known and not renamed else _plain(label), self.parts)
+        name = _free(given if known and not renamed else _plain(label), self.parts, self._numbers)
         self.parts[name] = item
         if known:
             self.recorded[given] = name
@@ -234,10 +236,11 @@ class _Model:
             start = len(self.findings)
             self._solids[container] = self._read(container, name)
             self._wrong[container] = self.findings[start:]
-        elif not any(finding.code == "W_FREECAD_SHAPE" and finding.parts == (name,) for finding in self.findings):
+        elif name not in self._asked:
             for finding in self._wrong[container]:  # each copy lacks what its source lacks
                 message = finding.message.replace(repr(finding.parts[0]), repr(name))
                 self.findings.append(replace(finding, where=f"parts.{name}", parts=(name,), message=message))
+        self._asked.add(name)
         return self._solids[container]
 
     def _read(self, container: FreeCADObject, name: str) -> tuple[Solid | None, tuple[Shape, ...]]:
@@ -527,7 +530,8 @@ class _Model:
         """Return the assembly of a document that articad did not write."""
         joints, couplings = self.joined([], self.joints())
         joints += self.loose(joints)
-        parts = [self.part(name, joints) for name in self.parts]
+        of = joints_by_part(joints)
+        parts = [self.part(name, of.get(name, ())) for name in self.parts]
         title = self.assembly.text("Label") or self.path.stem
         try:
             made = Assembly.from_parts(
@@ -549,9 +553,11 @@ class _Model:
             ReadError: With the name of a joint that cannot be read.
         """
         made, stated, restricting = list(joints), [], []
+        names, numbers = {joint.name for joint in made}, dict[str, int]()
         for item, kind, joint in rows:
             if joint is not None:
-                made.append(replace(joint, name=_free(joint.name, {other.name for other in made})))
+                made.append(replace(joint, name=_free(joint.name, names, numbers)))
+                names.add(made[-1].name)
             elif kind in COUPLINGS:
                 stated.append((item, self.stated(item, kind)))
             elif kind in CONSTRAINTS:
@@ -596,8 +602,8 @@ class _Model:
                 unit="mm" if far > STANDS_MM else "deg",
             )
 
-    def part(self, name: str, joints: list[Joint]) -> Part:
-        """Return a part with the connectors that joints use, as the document has it."""
+    def part(self, name: str, joints: Sequence[Joint]) -> Part:
+        """Return a part with the connectors that its joints use, as the document has it."""
         frames = dict(self.connectors(name))
         for joint in joints:
             if joint.parent == name:
@@ -683,10 +689,11 @@ def _updated(model: _Model, recorded: Assembly) -> Assembly:
     joints += model.loose(joints)
     known = {now: name for name, now in names.items()}
     order = [*(names[name] for name in recorded.parts if name in names), *(name for name in model.parts if name not in known)]
+    of = joints_by_part(joints)
     parts = {
-        name: _part_now(recorded.parts[known[name]], name, model, joints, densities, sizes, meshes)
+        name: _part_now(recorded.parts[known[name]], name, model, of.get(name, ()), densities, sizes, meshes)
         if name in known
-        else model.part(name, joints)
+        else model.part(name, of.get(name, ()))
         for name in order
     }
     T_ground = model.poses[model.ground]
@@ -866,7 +873,7 @@ def _part_now(
     part: Part,
     name: str,
     model: _Model,
-    joints: list[Joint],
+    joints: Sequence[Joint],
     densities: Mapping[str, float],
     sizes: Mapping[str, dict[str, Any]],
     meshes: Mapping[str, dict[str, Any]],
@@ -1013,11 +1020,28 @@ def _reached(start: str, joints: list[Joint]) -> set[str]:
     return found
 
 
-def _free(wanted: str, taken: Any) -> str:
-    """Return a name that is not taken: the wanted one, or with a number."""
-    name, number = wanted, 2
+def joints_by_part(joints: Iterable[Joint]) -> dict[str, list[Joint]]:
+    """Return the joints of each part that has any."""
+    found: dict[str, list[Joint]] = {}
+    for joint in joints:
+        for name in {joint.parent, joint.child}:
+            found.setdefault(name, []).append(joint)
+    return found
+
+
+def _free(wanted: str, taken: Any, numbers: dict[str, int] | None = None) -> str:
+    """Return a name that is not taken: the wanted one, or with a number.
+
+    Args:
+        wanted: The name.
+        taken: The names that are taken; none is ever given back.
+        numbers: By name, where to begin to count; kept for the next call.
+    """
+    numbers = {} if numbers is None else numbers
+    name = wanted
     while name in taken:
-        name, number = f"{wanted}_{number}", number + 1
+        number = numbers.get(wanted, 2)
+        name, numbers[wanted] = f"{wanted}_{number}", number + 1
     return name
 
 
