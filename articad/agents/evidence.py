@@ -12,7 +12,8 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from articad.agents.numbers import placed, short
-from articad.agents.orders import HELD, addressed
+from articad.agents.orders import HELD, addressed, is_fault_of_joint
+from articad.agents.spacing import spacings
 from articad.agents.travel import told_travels, travels
 from articad.agents.trials import with_trials
 from articad.arrays import FloatArray
@@ -48,6 +49,11 @@ class Evidence:
     def ok(self) -> bool:
         """True when nothing is wrong."""
         return self.checks.ok
+
+    @property
+    def faults_of_joints(self) -> Findings:
+        """Warnings about joints that someone must answer once."""
+        return Findings(filter(is_fault_of_joint, self.joints))
 
     @property
     def findings(self) -> Findings:
@@ -107,7 +113,10 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
     lines += [f"- {pairs} pairs of parts come near each other: compared at rest and along each joint's range, all other joints at rest."]
     lines += ["- Two joints were not moved together."] if len(assembly.drivers) > 1 else []
     if evidence.joints:
-        lines += ["", "What surfaces leave open of the joints (warnings; no check fails by them, and plans need not solve retention):"]
+        lines += [
+            "",
+            "What surfaces leave open of the joints (no check fails by these; that a part is not secured along its axis is no fault):",
+        ]
         lines += [f"- {finding}" for finding in evidence.joints]
     whole = assembly.mass()
     lines += ["", f"Mass {short(whole.mass)} kg; centre of mass at rest {placed(whole.com)} mm."]
@@ -116,6 +125,8 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
         f"Mobility: {mechanism.mobility} freedoms. How far each joint goes, with one driver moved at a time (an endless one by a turn):",
     ]
     lines += told_travels(travels(assembly))
+    if apart := spacings(assembly):
+        lines += ["", "Distances of the axes about which a part turns or others turn on it (mm):", *apart]
     lines += ["", "Bounding boxes at rest, in the assembly's frame (mm):"]
     lines += [f"- {name}: from {placed(low)} to {placed(high)}" for name, (low, high) in evidence.sizes.items()]
     fits = [row for row in evidence.checks.fits if isinstance(row, FitCheck)]

@@ -15,8 +15,7 @@ from articad.agents.design import DOUBTS, Designer, listed
 from articad.agents.evidence import Evidence, examine
 from articad.agents.inspection import Verdict, inspect, verdict_of
 from articad.agents.llm import Image, closed_port
-from articad.agents.orders import APART
-from articad.agents.part_builder import PartBuilder, PartsError
+from articad.agents.part_builder import Complained, PartBuilder, PartsError
 from articad.agents.pictures import offence_picture
 from articad.agents.requirements import Requirements, analyse
 from articad.agents.retrieval import Memory
@@ -190,13 +189,12 @@ class Line:
         with closed_port("assembly and checks are deterministic"):
             evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
-            stated = Findings([*assembly.findings.of(*DOUBTS), *evidence.joints.of(APART)])
-            doubts = stated + self.other_ranges(assembly, requirements)
+            doubts = evidence.faults_of_joints + assembly.findings.of(*DOUBTS) + self.other_ranges(assembly, requirements)
         self.builder.announce("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
         verdict = verdict_of(evidence, number)
         if not self.options.get("inspection", False):
             return evidence, replace(verdict, findings=verdict.findings + doubts)
-        if evidence.ok:
+        if evidence.ok and not self.router.due(evidence.faults_of_joints):
             self.builder.announce("inspection", "started")
             verdict = inspect(assembly, evidence, self.asked, requirements, self.port, number=number)
             self.builder.announce("inspection", "ok" if verdict.ok else f"{len(verdict.findings.errors)} errors")
@@ -220,7 +218,7 @@ class Line:
         """Pass on to the authors of scripts the findings about their parts, with pictures."""
         for name, findings in repair.code.items():
             pictures = _places(assembly, findings, most=1)
-            self.builder.complaints[name] = listed(findings), pictures[0] if pictures else None
+            self.builder.complaints[name] = Complained(listed(findings), pictures[0] if pictures else None)
 
     def _designed_again(self, planner: PlanAuthor, plan: AssemblyPlan, repair: Repair, assembly: Assembly | None) -> AssemblyPlan:
         self.builder.announce("design", "again")

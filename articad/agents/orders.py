@@ -48,8 +48,9 @@ from articad.realisation.bores import TILT, along, beside
 from articad.realisation.holes import Hole, HolesApart, holes_apart, point_text
 from articad.realisation.sides import Sides, sides
 from articad.realisation.slots import Between, Slot, slots_of
+from articad.realisation.verdicts import is_loose
 
-__all__ = ["APART", "FITS", "HELD", "addressed", "as_built", "source_of"]
+__all__ = ["FITS", "HELD", "addressed", "as_built", "is_fault_of_joint", "source_of"]
 
 FITS: Final = frozenset({"E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
 APART: Final = "W_HOLES_APART"
@@ -95,24 +96,35 @@ class _Round(NamedTuple):
 
 
 class _Joined(NamedTuple):
-    """A joint with the faces of both sides, its bores with their pins or sockets with their balls, the slots of a slider, and holes of a fixed joint."""
+    """A joint with the faces of both sides, its bores with their pins or sockets with their balls, the slots of a slider, and holes of a fixed joint.
+
+    Attributes:
+        wide: Bores with pins that hang in them, where a finding says so and no pair is nearly equal in size.
+    """
 
     joint: Joint
     sides: Sides
     fits: tuple[tuple[_Round, _Round], ...]
     slots: tuple[Slot, ...]
     holes: tuple[HolesApart, ...]
+    wide: tuple[tuple[_Round, _Round], ...] = ()
 
     @classmethod
-    def of(cls, assembly: Assembly, scene: Scene, joint: Joint) -> Self:
+    def of(cls, assembly: Assembly, scene: Scene, joint: Joint, *, is_loose: bool = False) -> Self:
         both = sides(scene, joint)
         fits = tuple(_mating(both))
-        holes = tuple(holes_apart(scene, assembly.at(), joint))
-        return cls(joint, both, fits, tuple(slots_of(both)) if joint.type is JointType.SLIDER and not fits else (), holes)
+        slots = tuple(slots_of(both)) if joint.type is JointType.SLIDER and not fits else ()
+        wide = tuple(_mating(both, most=1.0)) if is_loose and not fits else ()
+        return cls(joint, both, fits, slots, tuple(holes_apart(scene, assembly.at(), joint)), wide)
 
     @property
     def parts(self) -> frozenset[str]:
         return frozenset({self.joint.parent, self.joint.child})
+
+
+def is_fault_of_joint(finding: Finding) -> bool:
+    """Return whether a warning about a joint must be answered once: a pin is loose in its bore, or holes do not meet."""
+    return finding.code == APART or (finding.code in HELD and is_loose(finding))
 
 
 def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, verdicts: Iterable[PairCheck] = ()) -> Findings:
@@ -129,7 +141,9 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
     pairs = {frozenset(finding.parts) for finding in several if finding.code in _CODES and len(finding.parts) == 2}
     if assembly.resolved is None or not pairs:
         return Findings(several)
-    joined = [_Joined.of(assembly, scene, joint) for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
+    loose = {finding.where for finding in several if is_loose(finding)}
+    judged = [joint for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
+    joined = [_Joined.of(assembly, scene, joint, is_loose=f"joints.{joint.name}" in loose) for joint in judged]
     departed = _touching(several, assembly.resolved, joined) | _departed(assembly, assembly.resolved, joined)
     joints = [one.joint for one in joined]
     departed = {source: why for source, why in departed.items() if not _follows_otherwise(source, assembly, assembly.resolved, joints)}
@@ -221,7 +235,7 @@ def _departed(assembly: Assembly, resolved: ResolvedPlan, joined: Sequence[_Join
         for part, reason in _elsewhere(one) if not one.fits else ():
             source = source_of(part, resolved)
             found.setdefault(source, f"{source} {reason} the axis of joint {one.joint.name!r}.")
-        for surface, mating in [pair for bore, pin in one.fits for pair in ((bore, pin), (pin, bore))]:
+        for surface, mating in [pair for bore, pin in one.fits or one.wide for pair in ((bore, pin), (pin, bore))]:
             source = source_of(surface.part, resolved)
             dimensions = resolved.parts[source].dimensions
             which = f"The {surface.what} of {source} in joint {one.joint.name!r}"
@@ -435,13 +449,18 @@ def _origins(name: str, resolved: ResolvedPlan) -> list[FloatArray]:
     return [np.zeros(3), *(connector.frame.translation for connector in resolved.parts[name].connectors.values())]
 
 
-def _mating(both: Sides) -> Iterator[tuple[_Round, _Round]]:
-    """Yield each bore with its pin and each socket with its ball, one on each side of a joint, nearly equal in size."""
+def _mating(both: Sides, *, most: float = _ALIKE) -> Iterator[tuple[_Round, _Round]]:
+    """Yield each bore with its pin and each socket with its ball, one on each side of a joint.
+
+    Args:
+        both: The faces of the two sides.
+        most: Largest difference of their radii, as a share of the larger; nearly equal in size by default.
+    """
     for one, other in ((both.parent, both.child), (both.child, both.parent)):
         bores = [each for each in one if each.face.kind in _WORDS and each.face.hollow]
         pins = [each for each in other if each.face.kind in _WORDS and not each.face.hollow]
         for (part, bore), (against, pin) in itertools.product(bores, pins):
-            if abs(bore.radius - pin.radius) <= _ALIKE * max(bore.radius, pin.radius) and _goes_into(pin, bore):
+            if abs(bore.radius - pin.radius) <= most * max(bore.radius, pin.radius) and _goes_into(pin, bore):
                 around, inside = _WORDS[bore.kind]
                 floors = _floors(bore, [each.face for each in one if each.part == part])
                 depth = float(np.ptp(bore.corners @ bore.axis)) if floors == 1 else None

@@ -8,14 +8,17 @@ from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Final
+from itertools import chain
+from typing import Any, Final, NamedTuple
 
 from articad.agents.finetuning import absorbed, notes
 from articad.agents.llm import LLM, Image, closed_port
-from articad.agents.part_group import asked_together, grouped
-from articad.agents.part_writer import Answer, Attempt, PartWriter, failure_text
+from articad.agents.part_group import asked_together, evenly, grouped
+from articad.agents.part_writer import Answer, Attempt, Complaint, PartWriter, failure_text, told_of
+from articad.agents.pictures import part_picture
 from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory
 from articad.agents.rollback import Fate
+from articad.agents.survey import TOGETHER, Ordered, survey
 from articad.aliases import Progress
 from articad.assembly import DEFLECTION_MM, Assembly
 from articad.errors import AgentError, ArticadError, ContractError, KernelError, OutputError
@@ -24,6 +27,7 @@ from articad.findings.codes import CODES
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import RealisedPart, build_parts, build_source
 from articad.plan.brief import brief_digest
+from articad.plan.entry import order
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
@@ -54,6 +58,14 @@ class PartsError(ContractError):
         )
 
 
+class Complained(NamedTuple):
+    """What is wrong with a part that was built: the text, a picture of it, and the prompt that returns the script."""
+
+    failure: str
+    picture: Image | None
+    prompt: Complaint = "part_again"
+
+
 @dataclass
 class _Made:
     """A part that was made or tried: its entry in the plan, the number of answers, and the result."""
@@ -61,7 +73,7 @@ class _Made:
     brief: str
     answers: int
     script: bytes | None
-    opinions: Findings = field(default_factory=Findings)
+    opinions: Findings | None = None  # of an inspector; None if no inspector saw it
 
 
 @dataclass
@@ -77,7 +89,7 @@ class PartBuilder:
         progress: Called for each part.
         memory: Source of worked examples.
         documentation: Source of the kernel's API.
-        complaints: Findings for the authors of scripts in the next round, by part.
+        complaints: What the authors of scripts are told when their parts are made again, by part.
         fates: What became of each part in this round.
         begun: Scripts that were written for other entries of these parts, for their authors to change.
         ending: Text that is appended to every script.
@@ -93,7 +105,7 @@ class PartBuilder:
     progress: Progress | None
     memory: Memory = field(default_factory=NoMemory)
     documentation: Documentation = field(default_factory=NoDocumentation)
-    complaints: dict[str, tuple[str, Image | None]] = field(default_factory=dict)
+    complaints: dict[str, Complained] = field(default_factory=dict)
     fates: dict[str, Fate] = field(default_factory=dict)
     begun: dict[str, bytes] = field(default_factory=dict)
     ending: bytes = b""
@@ -113,7 +125,7 @@ class PartBuilder:
     @property
     def opinions(self) -> Findings:
         """Complaints of inspectors about parts as they are."""
-        return Findings(finding for made in self.made.values() for finding in made.opinions)
+        return Findings(finding for made in self.made.values() for finding in made.opinions or ())
 
     def assembled(self, plan: AssemblyPlan) -> tuple[AssemblyPlan, Assembly]:
         """Return the assembly of a plan, and the plan: a new version of it if connectors were fine-tuned.
@@ -123,7 +135,9 @@ class PartBuilder:
             AgentError: If a model cannot be asked.
         """
         resolved = resolve(plan)
-        self.make({name: resolved for name, part in resolved.parts.items() if part.derivation is None}, tuple(resolved.parts))
+        sources = {name: resolved for name, part in resolved.parts.items() if part.derivation is None}
+        self.make(sources, tuple(resolved.parts))
+        self.survey(sources)
         self.announce("assembly", "started")
         with closed_port("assembly is deterministic"):
             return self.joined(plan, resolved)
@@ -139,7 +153,7 @@ class PartBuilder:
         self._before = dict(fates or {})
         for name, script in scripts.items():
             old = self.made.get(name)
-            answers, opinions = (0, Findings()) if old is None else (old.answers, old.opinions)
+            answers, opinions = (0, Findings()) if old is None else (old.answers, old.opinions)  # a finished run's inspectors saw them
             self.made[name] = _Made(brief_digest(resolved[name], name), answers, script, opinions)
 
     def make(self, resolved: Mapping[str, ResolvedPlan], planned: tuple[str, ...]) -> None:
@@ -168,6 +182,44 @@ class PartBuilder:
         self.complaints = {}
         self.fates = {name: self.fates[name] for name in (*sources, *gone) if name in self.fates}
         _raise_failures(futures, len(sources))
+
+    def survey(self, resolved: Mapping[str, ResolvedPlan]) -> None:
+        """Have parts that no inspector saw held against their orders; have those whose scripts departed made again.
+
+        Args:
+            resolved: By part, the plan that has its entry.
+
+        Raises:
+            PartsError, AgentError: As `assembled`.
+        """
+        if self._options.get("look") != "together":
+            return
+        unseen = {name: plan for name, plan in resolved.items() if self.made[name].opinions is None}
+        with ThreadPoolExecutor(max_workers=CALLS_AT_ONCE) as pool:
+            found = Findings(chain.from_iterable(pool.map(partial(self._surveyed, unseen), evenly(list(unseen), TOGETHER))))
+        for finding in found:
+            self.run.trace_finding(finding)
+        for name in unseen:
+            mine = Findings(finding for finding in found if finding.parts == (name,))
+            self.made[name].opinions = mine
+            if any(finding.route == "code" for finding in mine):
+                part = self._build(resolved[name], name, self.scripts[name])
+                self.complaints[name] = Complained(told_of(mine), part_picture(part.part, part.digests["build"]), "look_repair")
+        if self.complaints:
+            fates = self.fates
+            self._before = dict(fates)
+            self.make(resolved, self.planned)
+            self.fates = fates | self.fates
+
+    def _surveyed(self, resolved: Mapping[str, ResolvedPlan], names: tuple[str, ...]) -> Findings:
+        """Return what an inspector says of some finished parts; nothing if its answers do not have the form."""
+        parts = {name: Ordered(order(resolved[name], name), self._build(resolved[name], name, self.scripts[name])) for name in names}
+        step = f"survey/{names[0]}/{self._answers(names[0])}"
+        self.announce(", ".join(names), "surveyed")
+        try:
+            return survey(parts, self.port, step=step)
+        except OutputError as error:
+            return error.findings
 
     def alone(self, resolved: Mapping[str, ResolvedPlan]) -> dict[str, RealisedPart]:
         """Return finished parts as these plans of single parts describe them."""
@@ -218,7 +270,7 @@ class PartBuilder:
         answers, previous = self._answers(name), None
         if old is not None and old.brief == digest and old.script is not None:
             if complaint is not None:
-                previous = Attempt(self._shown(old.script), complaint[0], complaint[1], complaint="part_again")
+                previous = Attempt(self._shown(old.script), complaint.failure, complaint.picture, complaint=complaint.prompt)
             else:
                 try:
                     self._build(resolved, name, old.script)

@@ -29,10 +29,13 @@ def grouped(names: Sequence[str], most: int) -> list[tuple[str, ...]]:
         names: Parts without a script.
         most: Parts in one group.
     """
-    if min(len(names), most) < LEAST:
-        return []
+    return [] if min(len(names), most) < LEAST else evenly(names, most)
+
+
+def evenly(names: Sequence[str], most: int) -> list[tuple[str, ...]]:
+    """Return names in as few groups of at most `most` as possible, of nearly equal size, in their order."""
     count = -(-len(names) // most)
-    edges = [len(names) * index // count for index in range(count + 1)]
+    edges = [len(names) * index // count for index in range(count + 1)] if count else [0]
     return [tuple(names[start:end]) for start, end in itertools.pairwise(edges)]
 
 

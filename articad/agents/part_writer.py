@@ -6,7 +6,7 @@ A request to repair depends on the part's own entry, its own connectors, the ker
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final, Literal
 
@@ -36,9 +36,10 @@ _EXAMPLES: Final = {"build123d": "lid_left.txt", "freecad": "door_left_freecad.t
 Build = Callable[[str, bytes], RealisedPart]
 """Builds the script of a part, or raises `KernelError`."""
 
-Looks = bool | Literal["doubtful"]
-"""Which parts' pictures are compared with their specification: none, all, or the doubtful ones: those whose first script failed, about
-whose solid there is a warning, or of which the user gave a picture.
+Looks = bool | Literal["together"]
+"""Which parts' pictures are compared with their specification, each in a request of its own: none, all, or with "together" the doubtful
+ones: those whose first script failed, about whose solid there is a warning, or of which the user gave a picture. With "together" the
+others are surveyed, several in one request (`articad.agents.survey`).
 """
 
 Complaint = Literal["part_repair", "part_again", "part_edit", "look_repair"]
@@ -99,12 +100,12 @@ class WrittenPart:
     Attributes:
         realised: The part.
         answers: Number of answers in all; the address of the next one follows from it.
-        opinions: Complaints of an inspector; exact checks neither confirm nor refute them.
+        opinions: Complaints of an inspector; exact checks neither confirm nor refute them. None if no inspector saw it.
     """
 
     realised: RealisedPart
     answers: int
-    opinions: Findings = field(default_factory=Findings)
+    opinions: Findings | None = None
 
 
 class PartWriter:
@@ -169,10 +170,10 @@ class PartWriter:
                     previous is not None or any(finding.severity == "warning" for finding in outcome.findings) or bool(self._pictures)
                 )
                 best = WrittenPart(outcome, number, self._opinions(outcome, number, doubtful=doubtful))
-                of_script = Findings(finding for finding in best.opinions if finding.route == "code")
+                of_script = Findings(finding for finding in best.opinions or () if finding.route == "code")
                 if not of_script:
                     return best
-                outcome = Attempt(answer.text, _told(of_script), self._picture(outcome), complaint="look_repair")
+                outcome = Attempt(answer.text, told_of(of_script), self._picture(outcome), complaint="look_repair")
             if outcome.is_of_design:
                 previous = outcome
                 break
@@ -197,17 +198,17 @@ class PartWriter:
         snippets = self._documentation.for_part(self._name, self._specification, kernel, self._llm)
         return opening(self._resolved, self._name, kernel, self._pictures, examples=examples, snippets=snippets)
 
-    def _opinions(self, realised: RealisedPart, number: int, *, doubtful: bool) -> Findings:
-        """Return an inspector's complaints about a part; none if nobody looks at it, or its answers do not have the form."""
-        if not (doubtful if self._looks == "doubtful" else self._looks):
-            return Findings()
+    def _opinions(self, realised: RealisedPart, number: int, *, doubtful: bool) -> Findings | None:
+        """Return an inspector's complaints about a part; None if nobody looks at it, or its answers do not have the form."""
+        if not (doubtful if self._looks == "together" else self._looks):
+            return None
         step = f"look/{self._name}/{number}"
         try:
             opinions = look(self._specification, self._name, realised, self._llm, step=step, pictures=self._pictures)
         except OutputError as error:
             for finding in error.findings:
                 self._run.trace_finding(finding)
-            return Findings()
+            return None
         for finding in opinions:
             self._run.trace_finding(finding)
         return Findings(finding for finding in opinions if finding.severity == "warning")  # what no picture shows is not a complaint
@@ -293,7 +294,8 @@ def failure_text(error: KernelError | OutputError) -> str:
     return "\n".join(lines)[:_SHOWN_CHARACTERS]
 
 
-def _told(findings: Findings) -> str:
+def told_of(findings: Findings) -> str:
+    """Return an inspector's complaints as the author of the script is told them."""
     return "\n".join(f"- {finding.message} {finding.hint}".rstrip() for finding in findings)
 
 

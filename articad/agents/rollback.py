@@ -13,7 +13,7 @@ from typing import Any, Final, Literal
 
 from articad.agents.design import DOUBTS
 from articad.agents.llm import LLM, system, user
-from articad.agents.orders import APART, source_of
+from articad.agents.orders import is_fault_of_joint, source_of
 from articad.agents.prompts import prompt
 from articad.agents.replies import ReplyForm, ask, reader, schema_of, unusable
 from articad.findings import Finding, Findings
@@ -86,7 +86,7 @@ class Router:
         self._tried: dict[_Signature, list[str]] = {}
 
     def due(self, findings: Iterable[Finding]) -> list[Finding]:
-        """Return the findings to be routed: errors, and once each doubts about the plan, an inspector's complaints about entries, and holes that do not meet."""
+        """Return the findings to be routed: errors, and once each doubts about the plan, an inspector's complaints about it, and faults of joints."""
         return [
             finding
             for finding in findings
@@ -193,7 +193,7 @@ def _culprit(finding: Finding, resolved: ResolvedPlan) -> str | None:
 def _is_due_once(finding: Finding) -> bool:
     """Return whether a finding is a warning that someone must answer once."""
     is_opinion = finding.code.startswith("W_LOOK_") or finding.code in DOUBTS
-    return finding.code == APART or (is_opinion and finding.route == "design")
+    return is_fault_of_joint(finding) or (is_opinion and finding.route == "design")
 
 
 def _signature(finding: Finding) -> _Signature:

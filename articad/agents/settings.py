@@ -30,8 +30,9 @@ class RunOptions:
         designs: Answers within which a plan must be valid.
         repairs: How often a failed part script may be repaired.
         rounds: How often parts are assembled and checked; findings of the last check stay in the report.
-        look: Whether a model compares a part's pictures with its specification: True for each part, "doubtful" for those whose first
-            script failed, about whose solid there is a warning, or of which you gave a picture. The model must accept images.
+        look: Whether a model compares a part's pictures with its specification: True for each part in a request of its own, "together" for
+            several parts in one request, and alone for those whose first script failed, about whose solid there is a warning, or of
+            which you gave a picture. The model must accept images.
         together: Parts whose first scripts are asked for in one request.
         inspection: Whether one model describes the assembly from pictures and one judges it. It must accept images.
         ideas: Whether alternatives are proposed first; "auto" does so if the request leaves open what to build.
@@ -46,7 +47,7 @@ class RunOptions:
     designs: int = TRIES
     repairs: int = REPAIRS
     rounds: int = ROUNDS
-    look: Looks = "doubtful"
+    look: Looks = "together"
     together: int = TOGETHER
     inspection: bool = True
     ideas: Brainstorm = "auto"

@@ -142,10 +142,10 @@ ASKING = (
     argument(
         "--look",
         action="store_true",
-        default="doubtful",
+        default="together",
         help="compare pictures of each part with its specification (of parts whose script failed at first, or with warnings)",
     ),
-    argument("--no-look", dest="look", action="store_false", default="doubtful", help="compare no pictures of parts"),
+    argument("--no-look", dest="look", action="store_false", default="together", help="compare no pictures of parts"),
     argument("--no-inspection", dest="inspection", action="store_false", help="do not let models observe and judge the assembly"),
     *TEACHING,
     argument("--rounds", metavar="N", type=positive, default=3, help="number of designs that are built and checked (3)"),

@@ -9,9 +9,19 @@ from articad.connectors.connector import Connector
 from articad.plan.brief import brief
 from articad.plan.resolve import ResolvedPlan
 
-__all__ = ["specification"]
+__all__ = ["order", "specification"]
 
 _DIGITS: Final = 6  # decimals of mm in a prompt: the last bits of a cosine differ between machines
+
+
+def order(resolved: ResolvedPlan, name: str) -> str:
+    """Return what a part's solid must look like, without its material and connectors: what its pictures can be held against."""
+    target, told = resolved.parts[name], brief(resolved, name)
+    lines = [f"{field}: {text}" for field, text in (("role", target.role), ("orientation", target.orientation)) if text]
+    lines.append(f"description: {target.description}")
+    if told["dimensions"]:
+        lines.append(f"dimensions: {', '.join(f'{dimension} = {_number(value)}' for dimension, value in told['dimensions'].items())}")
+    return "\n".join(lines)
 
 
 def specification(resolved: ResolvedPlan, name: str) -> str:

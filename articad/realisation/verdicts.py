@@ -29,7 +29,7 @@ from articad.realisation.room import FAR_RAD, GROUND, Rise, Touch, far_mm, room
 from articad.realisation.sides import PartFace, Sides, sides
 from articad.realisation.stops import Stops
 
-__all__ = ["LEAST_SHARE", "OWN", "FreeWay", "JointCheck", "JointVerdict", "Realisation", "check_joints"]
+__all__ = ["LEAST_SHARE", "LOOSE_MM", "OWN", "FreeWay", "JointCheck", "JointVerdict", "Realisation", "check_joints", "is_loose"]
 
 LEAST_SHARE: Final = 0.25  # of a guide that a slide keeps engaged at the ends of its range
 _ROUNDING = 1e-6  # of a share
@@ -40,6 +40,7 @@ _UP = 0.9  # cosine: a direction in which the weight holds a part
 _ASIDE = 0.1  # the same of a normal, below which a face is across a way
 _OVER = 0.3  # the same for a way aslant, over a flank that stops the straight way
 _SHORT_MM = 1.0  # guides shorter than this have no share
+LOOSE_MM: Final = 1.0  # play across the axis of a pin in its bore: more is no clearance
 _NAMES: Final = ("x", "y", "z", "about x", "about y", "about z")
 
 JointVerdict = Literal["made", "partly", "not made", "held by others", "not assessed"]
@@ -176,6 +177,11 @@ def check_joints(
     rows = [_Examined(scene, poses, joint).row(reached or {}, holders) for joint in judged]
     lost = (finding for joint in judged for finding in lost_holes(scene, poses, joint))
     return Realisation(Findings([*(finding for row in rows for finding in _findings(row)), *lost]), tuple(rows))
+
+
+def is_loose(finding: Finding) -> bool:
+    """Return whether a finding about a joint says that its pin has more play across its axis than `LOOSE_MM`."""
+    return finding.unit == "mm" and finding.value is not None and finding.limit is not None and finding.value > finding.limit
 
 
 class _Examined:
@@ -432,6 +438,8 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
     at = "" if not row.at else " at " + ", ".join(f"{name} = {value:.4g}" for name, value in row.at.items())
     ways = _left([loss for loss in row.losses if not loss.by_weight])
     pose = None if row.at is None else dict(row.at)
+    play = _play_across(row)
+    across: dict[str, Any] = {} if play is None else {"value": play, "limit": LOOSE_MM, "unit": "mm"}
     if row.verdict == "not made":
         yield Finding(
             code="W_JOINT_NOT_MADE",
@@ -440,6 +448,7 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             message=f"No surfaces of {a} and {b} form the {row.type} joint {row.joint!r}: they leave the child {ways}.",
             hint=_remedy(row.type),
             stage="fit",
+            **across,
         )
     elif row.verdict == "partly" and ways:
         code = "W_JOINT_PARTLY_MADE" if row.at is None else "W_JOINT_LEAVES"
@@ -453,6 +462,7 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             else "Add surfaces that stop these motions, or a part that does.",
             pose=pose,
             stage="fit",
+            **across,
         )
     if row.share is not None and _is_short(row.share) and row.verdict == "made":
         yield Finding(
@@ -466,6 +476,14 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             pose=pose,
             stage="fit",
         )
+
+
+def _play_across(row: JointCheck) -> float | None:
+    """Return how far a pin moves across its axis in its bore [mm], if it is not held there and does not leave."""
+    if row.type not in _ROUND_AXIS:
+        return None
+    across = [loss.room for loss in row.losses if loss.way[1:] in ("x", "y") and not loss.by_weight and math.isfinite(loss.room)]
+    return max(across, default=None)
 
 
 def _left(losses: Sequence[FreeWay]) -> str:

@@ -47,7 +47,7 @@ def run_tasks(
     kernel: PartKernel | None = None,
     cache: BuildCache | None = None,
     memory: Memory | None = None,
-    look: Looks = "doubtful",
+    look: Looks = "together",
     model: str = "",
     repairs: int = REPAIRS,
     rounds: int = ROUNDS,

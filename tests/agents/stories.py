@@ -5,13 +5,14 @@ from __future__ import annotations
 import atexit
 import functools
 import json
+import re
 import tempfile
 from dataclasses import fields
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from articad.agents.llm import Scripted
+from articad.agents.llm import Request, Scripted, Text
 from articad.agents.settings import RunOptions, Services
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache
@@ -111,9 +112,16 @@ def judged(aspect: str, fault: str, *parts: str, what: str = "it is upside down"
     return json.dumps(ACCEPTED | {aspect: {"ok": False, "reason": what}, "problems": [problem]})
 
 
+def surveyed(request: Request) -> str:
+    """What an inspector of several parts says who finds all as ordered."""
+    words = "\n".join(part.text for message in request.messages for part in message.parts if isinstance(part, Text))
+    agreed = {"seen": "as ordered", "agrees": True, "fault": "none", "wrong": "", "remedy": ""}
+    return json.dumps({"parts": [{"part": name} | agreed for name in re.findall(r"^## (\w+)$", words, re.MULTILINE)]})
+
+
 def watched(*joints: str) -> dict[str, Any]:
     """Replies of all who look, satisfied."""
-    return {"look/*": LOOKS_RIGHT, "observe/*": observed(*joints), "judge/*": json.dumps(ACCEPTED)}
+    return {"look/*": LOOKS_RIGHT, "survey/*": surveyed, "observe/*": observed(*joints), "judge/*": json.dumps(ACCEPTED)}
 
 
 def flap(**answers: Any) -> Scripted:

@@ -103,8 +103,8 @@ def test_one_request_brings_the_scripts_of_all_parts(tmp_path: Path) -> None:
     llm = model(parts__plate__1=answer(**ROW))
     run = made(tmp_path / "run", llm)
 
-    assert llm.steps == ["requirements", "design/1", "parts/plate/1"]  # nobody looks: no script failed, and there is no warning
-    told = said(llm.requests[-1])
+    assert llm.steps == ["requirements", "design/1", "parts/plate/1", "survey/plate/1"]
+    told = said(llm.requests[-2])
     assert all(f"## {name}\n" in told for name in ROW)
     assert told.count("# The contract") == 1
     assert (run.checks() or {})["ok"]
@@ -118,7 +118,7 @@ def test_what_is_missing_or_wrong_is_asked_for_alone_and_looked_at(tmp_path: Pat
     )
     run = made(tmp_path / "run", llm)
 
-    assert sorted(llm.steps[2:]) == ["look/bob/2", "part/bob/2", "part/cat/1", "parts/plate/1"]
+    assert sorted(llm.steps[2:]) == ["look/bob/2", "part/bob/2", "part/cat/1", "parts/plate/1", "survey/plate/1"]
     repair = next(request for request in llm.requests if request.step == "part/bob/2")
     told = said(repair)
     assert "thicknes" in told
@@ -148,12 +148,12 @@ def test_a_run_that_is_resumed_asks_no_group_again(tmp_path: Path) -> None:
     llm = model(parts__plate__1=answer(**{name: text for name, text in ROW.items() if name != "cat"}), part__cat__1=used_up)
     with pytest.raises(TransportError):
         made(tmp_path / "run", llm)
-    later = Scripted({"part/cat/1": fenced(ROW["cat"])})
+    later = Scripted({"part/cat/1": fenced(ROW["cat"]), "survey/*": stories.surveyed})
     services = stories.settings(kernel=stories.kernel(), cache=stories.shared_cache())["services"]
 
     run = resume(tmp_path / "run", llm=later, services=services)
 
-    assert later.steps == ["part/cat/1"]
+    assert later.steps == ["part/cat/1", "survey/plate/1"]
     assert (run.checks() or {})["ok"]
 
 
@@ -165,4 +165,4 @@ def test_a_part_that_the_user_drew_is_asked_for_alone(tmp_path: Path) -> None:
     given = stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **(DEFAULT | {"inspection": False}))
     generate("a row", llm=llm, part_images={"bob": picture}, out=tmp_path / "run", **given)
 
-    assert sorted(llm.steps[2:]) == ["look/bob/1", "part/bob/1", "parts/plate/1"]
+    assert sorted(llm.steps[2:]) == ["look/bob/1", "part/bob/1", "parts/plate/1", "survey/plate/1"]

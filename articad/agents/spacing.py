@@ -1,0 +1,47 @@
+"""Spacing: how far apart the joints of a part are, which no bounding box shows."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Final
+
+import numpy as np
+
+from articad.arrays import FloatArray
+from articad.assembly import Assembly
+from articad.connectors.se3 import SE3
+from articad.kinematics.joints import JointType
+
+_AXES: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
+_POINTS: Final = (JointType.BALL, JointType.UNIVERSAL)
+_PARALLEL: Final = 1e-6  # sine of the angle between two axes
+_LEAST_MM: Final = 0.01  # axes that are closer are one
+MOST: Final = 6  # distances of one part; a plate with many pins has more, and nobody reads them
+
+
+def spacings(assembly: Assembly) -> list[str]:
+    """Return a line for each part that has two joints which turn: the distances of their axes if these are parallel, else of their origins [mm]."""
+    frames: dict[str, dict[str, tuple[JointType, SE3]]] = {name: {} for name in assembly.parts}
+    for joint in assembly.joints:
+        if joint.type in _AXES or joint.type in _POINTS:
+            frames[joint.parent][joint.name] = joint.type, joint.T_parent_connector
+            frames[joint.child][joint.name] = joint.type, joint.T_child_connector
+    lines = []
+    for name, own in frames.items():
+        found = [(a, b, _apart(own[a], own[b])) for a, b in itertools.combinations(own, 2)]
+        told = [f"{a} to {b} {round(distance, 2):g}" for a, b, distance in found if distance > _LEAST_MM]
+        if told:
+            more = f" and {len(told) - MOST} more" if len(told) > MOST else ""
+            lines.append(f"- {name}: {', '.join(told[:MOST])}{more}")
+    return lines
+
+
+def _apart(first: tuple[JointType, SE3], second: tuple[JointType, SE3]) -> float:
+    """Return the distance of two parallel axes, else of the origins [mm]; a ball or universal joint is a point on any axis."""
+    between: FloatArray = np.asarray(second[1].translation) - np.asarray(first[1].translation)
+    axes = [np.asarray(frame.rotation)[:, 2] for kind, frame in (first, second) if kind in _AXES]
+    if len(axes) == 2 and float(np.linalg.norm(np.cross(axes[0], axes[1]))) > _PARALLEL:
+        return float(np.linalg.norm(between))
+    if axes:
+        between = between - (between @ axes[0]) * axes[0]
+    return float(np.linalg.norm(between))
