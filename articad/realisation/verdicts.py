@@ -479,11 +479,11 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
 
 
 def _play_across(row: JointCheck) -> float | None:
-    """Return how far a pin moves across its axis in its bore [mm], if it is not held there and does not leave."""
+    """Return how far a pin moves across its axis in its bore [mm], if it is not held there and cannot leave."""
     if row.type not in _ROUND_AXIS:
         return None
-    across = [loss.room for loss in row.losses if loss.way[1:] in ("x", "y") and not loss.by_weight and math.isfinite(loss.room)]
-    return max(across, default=None)
+    play = max((loss.room for loss in row.losses if loss.way[1:] in ("x", "y") and not loss.by_weight), default=math.inf)
+    return play if math.isfinite(play) else None
 
 
 def _left(losses: Sequence[FreeWay]) -> str:
