@@ -45,7 +45,7 @@ from articad.plan.fields import lengths_in
 from articad.plan.resolve import Fit, ResolvedPlan
 from articad.plan.usage import CLEARANCE
 from articad.realisation.bores import TILT, along, beside
-from articad.realisation.holes import Hole, HolesApart, holes_apart, point_text
+from articad.realisation.holes import HolesApart, OpenHole, holes_apart, point_text
 from articad.realisation.sides import Sides, sides
 from articad.realisation.slots import Between, Slot, slots_of
 from articad.realisation.verdicts import is_loose
@@ -393,7 +393,7 @@ def as_built(finding: Finding, fit: Fit) -> dict[str, Any]:
     return {"gap_mm": [min(least, low), max(most or 0.0, high)]}
 
 
-def _misplaced_holes(several: Iterable[HolesApart], resolved: ResolvedPlan) -> Iterator[Hole]:
+def _misplaced_holes(several: Iterable[HolesApart], resolved: ResolvedPlan) -> Iterator[OpenHole]:
     """Yield each hole that alone of its pair is at a place that the dimensions of its part do not give, where they give the other place."""
     for apart in several:
         strange = []
@@ -423,7 +423,7 @@ def _moving(several: Iterable[HolesApart], resolved: ResolvedPlan) -> str:
     return ""
 
 
-def _moved(hole: Hole, resolved: ResolvedPlan) -> str:
+def _moved(hole: OpenHole, resolved: ResolvedPlan) -> str:
     """Return new values of the dimensions that are coordinates of a hole, or twice as much, and must change; empty if one coordinate has none."""
     source = source_of(hole.part, resolved)
     lengths = lengths_in(resolved.parts[source].dimensions)

@@ -21,7 +21,7 @@ from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.realisation.bores import TILT, along
 
-__all__ = ["TOUCH_MM", "Hole", "HolesApart", "holes_apart", "lost_holes", "point_text"]
+__all__ = ["TOUCH_MM", "HolesApart", "OpenHole", "holes_apart", "lost_holes", "point_text"]
 
 TOUCH_MM: Final = 0.05  # surfaces of a fixed joint this close are one
 COAXIAL_MM: Final = 0.2  # beyond half the difference of two diameters
@@ -35,7 +35,7 @@ _SAME_MM: Final = 0.02  # axes this close are one
 _THREAD: Final = 0.7  # of a hole's radius: least radius of what fills it
 
 
-class Hole(NamedTuple):
+class OpenHole(NamedTuple):
     """A round hole of a part that opens in a plane.
 
     Attributes:
@@ -61,8 +61,8 @@ class HolesApart(NamedTuple):
         allowed: Largest distance at which they meet [mm].
     """
 
-    parent: Hole
-    child: Hole
+    parent: OpenHole
+    child: OpenHole
     distance: float
     allowed: float
 
@@ -260,8 +260,8 @@ def _apart(joint: Joint, a: _Opening, b: _Opening, normal: FloatArray, T: FloatA
     across = across - (across @ normal) * normal
     back = np.linalg.inv(T)
     at_b, to_b = (back[:3, :3] @ point + back[:3, 3] for point in (b.point, b.point - across))
-    parent = Hole(joint.parent, a.point, a.point + across, 2 * a.least)
-    return HolesApart(parent, Hole(joint.child, at_b, to_b, 2 * b.least), float(np.linalg.norm(across)), a.allows(b))
+    parent = OpenHole(joint.parent, a.point, a.point + across, 2 * a.least)
+    return HolesApart(parent, OpenHole(joint.child, at_b, to_b, 2 * b.least), float(np.linalg.norm(across)), a.allows(b))
 
 
 def point_text(place: FloatArray) -> str:
