@@ -174,13 +174,11 @@ class AsRecorded:
             if self._misread and address[1] == "1":
                 scripts[0] = re.sub(r"(def build\(part\):\n)( +)", r"\1\2part.dimensions['size']\n\2", scripts[0], count=1)
             return "\n\n".join(f"## {name}\n\n{script}" for name, script in zip(names, scripts, strict=True))
-        if role == "survey":  # whoever looked at the recorded parts agreed
-            agreed = {"seen": "as ordered", "agrees": True, "fault": "none", "wrong": "", "remedy": ""}
-            return json.dumps({"parts": [{"part": name} | agreed for name in re.findall(r"^## (\w+)$", _words(request), re.MULTILINE)]})
-        if role in {"part", "look"}:
-            return self._said(f"{role}/{address[0]}/1")
-        if self._run.reply(request.step) is not None:
-            return self._said(request.step)
+        if role == "survey":
+            return _surveyed(request)
+        step = f"{role}/{address[0]}/1" if role in {"part", "look"} else request.step
+        if role in {"part", "look"} or self._run.reply(step) is not None:
+            return self._said(step)
         if role == "observe":  # the recording had no inspector: one agrees
             moving = [
                 {"joint": name, "seen": "moves", "expected": True} for name in re.findall(r"Keyframes of joint (\w+)", _words(request))
@@ -194,6 +192,12 @@ class AsRecorded:
         if stored is None:
             raise KeyError(f"{self._run.path} has no answer to {step}.")
         return Reply.from_json(stored["reply"]).text
+
+
+def _surveyed(request: Request) -> str:
+    """Answer as whoever looked at the recorded parts did: all are as ordered."""
+    agreed = {"seen": "as ordered", "agrees": True, "fault": "none", "wrong": "", "remedy": ""}
+    return json.dumps({"parts": [{"part": name} | agreed for name in re.findall(r"^## (\w+)$", _words(request), re.MULTILINE)]})
 
 
 def _words(request: Request) -> str:

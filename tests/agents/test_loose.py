@@ -22,9 +22,9 @@ TWICE = WHEEL.replace('d["bore"]', '2 * d["bore"]')
 """A diameter taken for a radius."""
 
 
-def document(**dimensions: float) -> dict[str, Any]:
+def document(bore: float = 4.0) -> dict[str, Any]:
     """A wheel on a pin, with no fit declared."""
-    plan, _ = wheel_on_a_pin(**dimensions)
+    plan, _ = wheel_on_a_pin(bore=bore)
     del plan["joints"][0]["fit"]
     return plan
 

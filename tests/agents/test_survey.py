@@ -112,7 +112,8 @@ def test_nobody_surveys_without_looks_or_where_each_part_has_a_look_of_its_own(t
 def test_parts_that_an_edit_leaves_alone_are_not_surveyed_again(tmp_path: Path) -> None:
     run = made(tmp_path / "run", model(parts__plate__1=answer(**ROW)))
     changed = json.dumps({"summary": "a thicker peg", "touches": ["bob"], "changes": {"parts.bob.dimensions.thickness": 3}})
-    llm = Scripted({"edit/1": changed, "part/*": fenced(PEG), "survey/*": surveyed} | stories.watched())
+    answers: dict[str, Any] = {"edit/1": changed, "part/*": fenced(PEG)}
+    llm = Scripted(answers | stories.watched())
     options = stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **(DEFAULT | {"inspection": False}))
     edit(run.path, "make bob thicker", llm=llm, out=tmp_path / "edited", **options)
 
