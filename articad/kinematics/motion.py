@@ -180,9 +180,10 @@ def _side_range(track: Track, coordinate: Coordinate, sign: int) -> tuple[float,
     if trace.stop is Stop.ARRIVED:
         end, reason = (bound, why) if math.isfinite(bound) else (end, str(Stop.STEPS))
     cut = _first_violation(track, trace, sign, coordinate)
-    if cut is not None:
-        return cut
-    return (sign * math.inf, "endless") if came_back else (end, reason)
+    if cut is None and came_back:
+        return sign * math.inf, "endless"
+    end, reason = cut or (end, reason)
+    return (end, reason) if sign * (bound - end) > 0 else (bound, why)  # an earlier call may have followed the driver farther
 
 
 def _bound(track: Track, coordinate: Coordinate, sign: int) -> tuple[float, str]:

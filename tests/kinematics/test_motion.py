@@ -11,6 +11,9 @@ from articad.errors import KinematicsError, UnknownJointError
 from articad.kinematics import Coupling, Joint, JointLimits, JointType, Mechanism, continuation
 from articad.kinematics.continuation import Follower
 from articad.kinematics.track import Track
+from articad.plan.resolve import resolve
+from articad.plan.schema import AssemblyPlan
+from articad_bench.task import TASKS
 from tests.kinematics.linkages import (
     at,
     bennett,
@@ -550,3 +553,14 @@ def test_a_sweep_that_misses_a_value_is_not_ok(monkeypatch: pytest.MonkeyPatch) 
     assert len(found.values) == 7
     assert found.findings.codes == ("E_NOT_FOLLOWED",)
     assert not found.ok
+
+
+def test_a_range_ends_at_the_drivers_own_limit_however_far_it_was_followed_before() -> None:
+    plan = AssemblyPlan.load(TASKS / "jack_scissor" / "reference")
+    mechanism = resolve(plan).mechanism
+    (turn,) = [coordinate for coordinate in mechanism.coordinates if coordinate.name == "turn"]
+    reached = [mechanism.feasible_range("turn") for _ in range(3)]
+
+    assert [found.upper for found in reached] == [turn.upper] * 3
+    assert [found.lower for found in reached] == [turn.lower] * 3
+    assert {found.upper_reason for found in reached} == {"declared limit"}
