@@ -43,6 +43,7 @@ FOLLOWED = (
 PAIRS = {
     "W_CONNECTOR_FEATURE": "kernels/test_features.py::test_an_axis_needs_something_round_about_it",
     "W_MOTION_RANGE": "agents/test_ranges.py::test_drawers_that_open_a_tenth_as_far_as_the_analysis_says_are_asked_about_and_corrected",
+    "W_RADIUS_MISTAKEN": "kernels/test_radii.py::test_twice_or_half_of_one_radius_is_named_and_is_gone_as_the_hint_says",
     "W_BORE_NARROW": "kernels/test_features.py::test_a_bore_like_a_needle_cannot_be_made",
     "W_PART_SCALE": "kernels/test_seating.py::test_one_dimension_far_longer_than_the_part_is_the_plans_fault_and_several_are_the_scripts",
     "W_NOT_CARRIED": "support/test_support.py::test_a_shelf_beside_its_pegs_falls_and_is_named",

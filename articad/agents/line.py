@@ -189,12 +189,13 @@ class Line:
         with closed_port("assembly and checks are deterministic"):
             evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
-            doubts = evidence.faults_of_joints + assembly.findings.of(*DOUBTS) + self.other_ranges(assembly, requirements)
+            faults = evidence.faults_of_joints + self.other_ranges(assembly, requirements)
+            doubts = faults + assembly.findings.of(*DOUBTS)
         self.builder.announce("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
         verdict = verdict_of(evidence, number)
         if not self.options.get("inspection", False):
             return evidence, replace(verdict, findings=verdict.findings + doubts)
-        if evidence.ok and not self.router.due(evidence.faults_of_joints):
+        if evidence.ok and not self.router.due(faults):
             self.builder.announce("inspection", "started")
             verdict = inspect(assembly, evidence, self.asked, requirements, self.port, number=number)
             self.builder.announce("inspection", "ok" if verdict.ok else f"{len(verdict.findings.errors)} errors")

@@ -33,7 +33,7 @@ from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 
 SENT_BACK: Final = frozenset(
-    {"W_CONNECTOR_DRIFT", "W_CONNECTOR_FEATURE", "W_PART_SCALE"}
+    {"W_CONNECTOR_DRIFT", "W_CONNECTOR_FEATURE", "W_PART_SCALE", "W_RADIUS_MISTAKEN"}
 )  # warnings about a part that its author must mend
 CALLS_AT_ONCE: Final = 8  # parts requested in parallel; a model's answer takes minutes, and providers limit the rate
 

@@ -1,4 +1,4 @@
-"""Spacing: how far apart the joints of a part are, which no bounding box shows."""
+"""Spacing: how far apart the joints of a rigid piece are, which no bounding box shows."""
 
 from __future__ import annotations
 
@@ -16,23 +16,33 @@ _AXES: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
 _POINTS: Final = (JointType.BALL, JointType.UNIVERSAL)
 _PARALLEL: Final = 1e-6  # sine of the angle between two axes
 _LEAST_MM: Final = 0.01  # axes that are closer are one
-MOST: Final = 6  # distances of one part; a plate with many pins has more, and nobody reads them
+MOST: Final = 6  # distances of one piece; a plate with many pins has more, and nobody reads them
 
 
 def spacings(assembly: Assembly) -> list[str]:
-    """Return a line for each part that has two joints which turn: the distances of their axes if these are parallel, else of their origins [mm]."""
+    """Return a line for each rigid piece that has two joints which turn: the distances of their axes, or of their origins where these are not parallel [mm].
+
+    A piece is a part with all that fixed joints join to it: the throw of a crank lies between its shaft and a pin of its own.
+    """
+    leader = {name: name for name in assembly.parts}
+    for joint in assembly.joints:
+        if joint.type is JointType.FIXED:
+            old, new = leader[joint.child], leader[joint.parent]
+            leader |= {name: new for name, led in leader.items() if led == old}
+    rest = assembly.at()
     frames: dict[str, dict[str, tuple[JointType, SE3]]] = {name: {} for name in assembly.parts}
     for joint in assembly.joints:
         if joint.type in _AXES or joint.type in _POINTS:
-            frames[joint.parent][joint.name] = joint.type, joint.T_parent_connector
-            frames[joint.child][joint.name] = joint.type, joint.T_child_connector
+            for name, frame in ((joint.parent, joint.T_parent_connector), (joint.child, joint.T_child_connector)):
+                frames[leader[name]][joint.name] = joint.type, rest[name] @ frame
     lines = []
     for name, own in frames.items():
         found = [(a, b, _apart(own[a], own[b])) for a, b in itertools.combinations(own, 2)]
         told = [f"{a} to {b} {round(distance, 2):g}" for a, b, distance in found if distance > _LEAST_MM]
         if told:
+            held = "".join(f" and {part}" for part, led in leader.items() if led == name and part != name)
             more = f" and {len(told) - MOST} more" if len(told) > MOST else ""
-            lines.append(f"- {name}: {', '.join(told[:MOST])}{more}")
+            lines.append(f"- {name}{held}: {', '.join(told[:MOST])}{more}")
     return lines
 
 

@@ -383,6 +383,12 @@ CODES: dict[str, Code] = {
         "A connector's kind orders a bore, a shaft or a face that the part does not have there.",
         "Build the feature where the connector is; or give the connector the kind 'frame'.",
     ),
+    "W_RADIUS_MISTAKEN": Code(
+        "build",
+        "code",
+        "No round face of a part has the radius that a dimension states, and one has twice or half of it.",
+        "Use the dimension as what it is: a radius, or a diameter.",
+    ),
     "W_BORE_NARROW": Code("build", "design", "A bore is too narrow and deep to be drilled or printed.", "Widen it, or leave it out."),
     "E_NOT_EDITABLE": Code(
         "build",

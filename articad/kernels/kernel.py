@@ -21,6 +21,7 @@ from articad.geometry.part import Part, Solid
 from articad.kernels.cache import BuildCache
 from articad.kernels.contract import dimension_findings, drift_findings, lengths_of, primary_connector, seating
 from articad.kernels.features import Order, bore_findings, feature_findings
+from articad.kernels.radii import radius_findings
 from articad.kernels.results import read_mesh
 from articad.plan.brief import brief, brief_digest, build_digest
 from articad.plan.fields import lengths_in
@@ -191,6 +192,7 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
     Returns:
         The part, and the findings that `built.findings` does not already contain: `E_CONNECTOR_DRIFT` if drift exceeds the bounds,
         `W_CONNECTOR_FEATURE` if a connector's kind orders a feature that is not there, `W_BORE_NARROW` for a bore that cannot be made,
+        `W_RADIUS_MISTAKEN` for a round face with twice or half of the radius that a dimension states,
         `W_SCALE` for a dimension far longer than the part, or a thickness out of proportion.
     """
     T = seating(resolved_part, built.connectors, primary_connector(resolved_part, built.brief))
@@ -208,6 +210,7 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
     name = resolved_part.name
     features = feature_findings(name, resolved_part.connectors, solid.mesh, _order(resolved_part))
     features += bore_findings(name, solid.mesh, lengths_of(resolved_part))
+    features += radius_findings(name, solid.mesh, lengths_in(resolved_part.dimensions) if resolved_part.derivation is None else {})
     found = drift + features + dimension_findings(resolved_part, solid.bbox)
     return part, Findings(finding for finding in found if (finding.code, finding.where) not in known)
 
