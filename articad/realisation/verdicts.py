@@ -469,7 +469,7 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             code="W_JOINT_SHORT",
             where=where,
             parts=row.parts,
-            message=f"Joint {row.joint!r} keeps {100 * row.share:.0f} % of its guide engaged{at}; at least 25 % is needed.",
+            message=f"Joint {row.joint!r} keeps {100 * row.share:.3g} % of its guide engaged{at}; at least 25 % is needed.",
             hint="Lengthen the guide, or shorten the travel.",
             value=row.share,
             limit=LEAST_SHARE,

@@ -10,7 +10,10 @@ import pytest
 
 from articad.agents.evidence import Evidence, examine
 from articad.agents.llm import Scripted
+from articad.agents.rollback import Router
 from articad.assembly import Assembly
+from articad.findings import Finding
+from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.realisation.verdicts import LOOSE_MM
 from tests.agents import stories
@@ -32,6 +35,18 @@ def document(bore: float = 4.0) -> dict[str, Any]:
 def examined(plan: dict[str, Any], wheel: str) -> Evidence:
     scripts = {"post": PINNED, "wheel": wheel}
     return examine(Assembly.from_plan(AssemblyPlan.from_json(plan), scripts, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1))
+
+
+@pytest.mark.parametrize("code", ["W_JOINT_LEAVES", "W_HOLES_APART", "W_JOINT_SHORT", "W_JOINT_NOT_MADE"])
+def test_a_joint_that_leaves_its_guide_and_holes_that_do_not_meet_are_asked_about_once(code: str) -> None:
+    plan = resolve(AssemblyPlan.from_json(document()))
+    found = Finding(code=code, where="joints.turn", parts=("post", "wheel"), message="so", hint="do", route="design")
+    router = Router(Scripted({}))
+    is_due = code in {"W_JOINT_LEAVES", "W_HOLES_APART"}
+
+    assert bool(router.due([found])) == is_due
+    assert list(router.decide(1, [found], plan, {}).design) == ([found] if is_due else [])
+    assert not router.due([found])
 
 
 @pytest.mark.parametrize(("bore", "loose"), [(4.0, False), (4.7, False), (5.3, True), (8.0, True)])
