@@ -1,0 +1,11 @@
+from build123d import Box, Cylinder, Rot
+
+
+def build(part):
+    d = part.dimensions
+    bar = Box(2 * d["half_length"], 2 * d["half_width"], 2 * d["half_height"])
+    bore = Rot(X=90) * Cylinder(d["bore_radius"], 2 * d["half_width"] + 2)
+    return bar - bore, {
+        "bore": {"o": (0, 0, 0), "z": (0, 1, 0), "x": (1, 0, 0)},
+        "slide": {"o": (0, 0, 0), "z": (1, 0, 0), "x": (0, 0, 1)},
+    }
