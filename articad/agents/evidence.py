@@ -126,7 +126,7 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
     ]
     lines += told_travels(travels(assembly))
     if apart := spacings(assembly):
-        lines += ["", "Distances of the axes about which a part turns or others turn on it (mm):", *apart]
+        lines += ["", "Distances between the axes of joints of each rigid piece (mm):", *apart]
     lines += ["", "Bounding boxes at rest, in the assembly's frame (mm):"]
     lines += [f"- {name}: from {placed(low)} to {placed(high)}" for name, (low, high) in evidence.sizes.items()]
     fits = [row for row in evidence.checks.fits if isinstance(row, FitCheck)]

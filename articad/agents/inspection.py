@@ -263,7 +263,7 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
     """
     made = f"{structure(assembly)}{_assumed(assembly)}"
     observations = _observed(assembly, [f"{asked_for(request, requirements, fields=_SEEN)}\n\n{made}", *wanted(request)], llm, number)
-    words = f"{asked_for(request, requirements, described=False)}\n\n{made}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n{observations.told()}"
+    words = f"{asked_for(request, requirements)}\n\n{made}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n{observations.told()}"
     judgement = ask(
         llm, "judge", f"judge/{number}/1", (system(prompt("judge")), user(words)), _judgement_of(assembly), schema=schema_of(Judgement)
     )
@@ -370,10 +370,10 @@ def wanted(request: RunRequest) -> tuple[str | Image, ...]:
     return ("The customer's own pictures of what is wanted, not of what was built:", *pictures) if pictures else ()
 
 
-def asked_for(request: RunRequest, requirements: Requirements, *, fields: Sequence[str] | None = None, described: bool = True) -> str:
-    """Return a request and its analysis as text; of the analysis all or some fields; see `Requirements.told`."""
+def asked_for(request: RunRequest, requirements: Requirements, *, fields: Sequence[str] | None = None) -> str:
+    """Return a request and its analysis as text; of the analysis all or some fields."""
     words = request.prompt.strip() or "(no words; there were pictures)"
-    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n{requirements.told(fields, described=described)}"
+    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n{requirements.told(fields)}"
 
 
 def structure(assembly: Assembly) -> str:

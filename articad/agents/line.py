@@ -78,7 +78,7 @@ class Line:
             try:
                 plan, assembly = self._assembled(plan)
             except PartsError as failed:
-                repair = self._decided(number, failed.for_design, plan)
+                repair = self._decided(number, failed.for_design, plan, every=True)
                 if last or repair.stalled:
                     raise
                 plan = self._designed_again(planner, plan, repair, None)
@@ -120,9 +120,9 @@ class Line:
         """Return the measurements of an assembly."""
         return examine(assembly)
 
-    def other_ranges(self, assembly: Assembly, requirements: Requirements) -> Findings:
-        """Return motions of the analysis that no joint makes."""
-        return ranges.built(assembly, requirements.motions)
+    def to_be_answered(self, assembly: Assembly, evidence: Evidence, requirements: Requirements) -> Findings:
+        """Return warnings that someone must answer once, before models look: faults of joints, and motions of the analysis that no joint makes."""
+        return evidence.faults_of_joints + ranges.built(assembly, requirements.motions)
 
     def finish(self, assembly: Assembly, evidence: Evidence, requirements: Requirements | None) -> None:
         """Review the result if requested, and write the exports."""
@@ -189,13 +189,13 @@ class Line:
         with closed_port("assembly and checks are deterministic"):
             evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
-            faults = evidence.faults_of_joints + self.other_ranges(assembly, requirements)
+            faults = self.to_be_answered(assembly, evidence, requirements)
             doubts = faults + assembly.findings.of(*DOUBTS)
         self.builder.announce("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
         verdict = verdict_of(evidence, number)
         if not self.options.get("inspection", False):
-            return evidence, replace(verdict, findings=verdict.findings + doubts)
-        if evidence.ok and not self.router.due(faults):
+            return evidence, replace(verdict, findings=verdict.findings + self.builder.opinions + doubts)
+        if evidence.ok and (number == self.rounds or not self.router.due(faults)):
             self.builder.announce("inspection", "started")
             verdict = inspect(assembly, evidence, self.asked, requirements, self.port, number=number)
             self.builder.announce("inspection", "ok" if verdict.ok else f"{len(verdict.findings.errors)} errors")
@@ -210,8 +210,8 @@ class Line:
 
     # ------------------------------------------------------------------ the edge back
 
-    def _decided(self, number: int, findings: Findings, plan: AssemblyPlan) -> Repair:
-        repair = self.router.decide(number, findings, resolve(plan), self.builder.scripts)
+    def _decided(self, number: int, findings: Findings, plan: AssemblyPlan, *, every: bool = False) -> Repair:
+        repair = self.router.decide(number, findings, resolve(plan), self.builder.scripts, every=every)
         self.repaired = number, repair
         return repair
 
@@ -219,7 +219,7 @@ class Line:
         """Pass on to the authors of scripts the findings about their parts, with pictures."""
         for name, findings in repair.code.items():
             pictures = _places(assembly, findings, most=1)
-            self.builder.complaints[name] = Complained(listed(findings), pictures[0] if pictures else None)
+            self.builder.complaints[name] = Complained(listed(findings), pictures[0] if pictures else None, may_stand=findings.ok)
 
     def _designed_again(self, planner: PlanAuthor, plan: AssemblyPlan, repair: Repair, assembly: Assembly | None) -> AssemblyPlan:
         self.builder.announce("design", "again")

@@ -141,7 +141,7 @@ def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, ver
     pairs = {frozenset(finding.parts) for finding in several if finding.code in _CODES and len(finding.parts) == 2}
     if assembly.resolved is None or not pairs:
         return Findings(several)
-    loose = {finding.where for finding in several if is_loose(finding)}
+    loose = {finding.where for finding in several if finding.code in HELD - {APART} and is_loose(finding)}
     judged = [joint for joint in assembly.joints if frozenset({joint.parent, joint.child}) in pairs]
     joined = [_Joined.of(assembly, scene, joint, is_loose=f"joints.{joint.name}" in loose) for joint in judged]
     departed = _touching(several, assembly.resolved, joined) | _departed(assembly, assembly.resolved, joined)

@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 from articad.agents.finetuning import absorbed, notes
 from articad.agents.llm import LLM, Image, closed_port
 from articad.agents.part_group import asked_together, evenly, grouped
-from articad.agents.part_writer import Answer, Attempt, Complaint, PartWriter, failure_text, told_of
+from articad.agents.part_writer import Answer, Attempt, Complaint, PartWriter, WrittenPart, failure_text, told_of
 from articad.agents.pictures import part_picture
 from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory
 from articad.agents.rollback import Fate
@@ -59,11 +59,19 @@ class PartsError(ContractError):
 
 
 class Complained(NamedTuple):
-    """What is wrong with a part that was built: the text, a picture of it, and the prompt that returns the script."""
+    """What is wrong with a part that was built.
+
+    Attributes:
+        failure: The text for the script's author.
+        picture: Of the part or the place.
+        prompt: The prompt that returns the script.
+        may_stand: Whether the part stays as it is if its author does not build a better one: no check fails by it.
+    """
 
     failure: str
     picture: Image | None
     prompt: Complaint = "part_again"
+    may_stand: bool = False
 
 
 @dataclass
@@ -204,12 +212,17 @@ class PartBuilder:
             self.made[name].opinions = mine
             if any(finding.route == "code" for finding in mine):
                 part = self._build(resolved[name], name, self.scripts[name])
-                self.complaints[name] = Complained(told_of(mine), part_picture(part.part, part.digests["build"]), "look_repair")
+                self.complaints[name] = Complained(
+                    told_of(mine), part_picture(part.part, part.digests["build"]), "look_repair", may_stand=True
+                )
         if self.complaints:
             fates = self.fates
             self._before = dict(fates)
-            self.make(resolved, self.planned)
-            self.fates = fates | self.fates
+            try:
+                self.make(resolved, self.planned)
+            finally:
+                self._before = {}
+                self.fates = fates | self.fates | {name: fate for name, fate in fates.items() if fate == "new"}
 
     def _surveyed(self, resolved: Mapping[str, ResolvedPlan], names: tuple[str, ...]) -> Findings:
         """Return what an inspector says of some finished parts; nothing if its answers do not have the form."""
@@ -267,10 +280,12 @@ class PartBuilder:
     def _make(self, resolved: ResolvedPlan, name: str, asked: Future[dict[str, Answer]] | None) -> None:
         """Make one part, or keep it as it is."""
         digest, old, complaint = brief_digest(resolved, name), self.made.get(name), self.complaints.get(name)
-        answers, previous = self._answers(name), None
+        answers, previous, standing = self._answers(name), None, None
         if old is not None and old.brief == digest and old.script is not None:
             if complaint is not None:
                 previous = Attempt(self._shown(old.script), complaint.failure, complaint.picture, complaint=complaint.prompt)
+                if complaint.may_stand:
+                    standing = WrittenPart(self._build(resolved, name, old.script), answers, old.opinions)
             else:
                 try:
                     self._build(resolved, name, old.script)
@@ -298,7 +313,7 @@ class PartBuilder:
         )
         self.made[name] = _Made(digest, answers + self._options["repairs"] + 1, None)  # until it is made: the addresses that may be used
         given = None if asked is None else asked.result().get(name)
-        written = writer.make(answered=answers, previous=previous, given=given)
+        written = writer.make(answered=answers, previous=previous, given=given, standing=standing)
         assert written.realised.script is not None
         self.made[name] = _Made(digest, written.answers, written.realised.script, written.opinions)
         self.announce(name, "built")

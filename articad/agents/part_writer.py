@@ -144,7 +144,9 @@ class PartWriter:
         self._pictures = tuple(Image(image.content, image.media_type) for image in run.request.images if image.part == name)
         self._specification = specification(resolved, name)
 
-    def make(self, *, answered: int = 0, previous: Attempt | None = None, given: Answer | None = None) -> WrittenPart:
+    def make(
+        self, *, answered: int = 0, previous: Attempt | None = None, given: Answer | None = None, standing: WrittenPart | None = None
+    ) -> WrittenPart:
         """Return the part as built.
 
         After the same failure twice in a row, another approach is requested; the third time ends the attempts. So does a failure of the
@@ -154,11 +156,12 @@ class PartWriter:
             answered: Answers that were given before; the address of the next one follows from it.
             previous: The last of these, and what is wrong with it.
             given: The first answer, if it was asked for together with those of other parts.
+            standing: The part as it is, which stays if no better one is built.
 
         Raises:
             BuildError, ContractError, OutputError: The failure of the last answer, when all repairs are used up or the specification is at fault.
         """
-        alike, best = 0, None
+        alike, best = 0, standing
         for number in range(answered + 1, answered + self._repairs + 2):
             answer = given or self._answer(number, messages_after(self._opening, previous, anew=alike == 1))
             given = None
@@ -200,7 +203,7 @@ class PartWriter:
 
     def _opinions(self, realised: RealisedPart, number: int, *, doubtful: bool) -> Findings | None:
         """Return an inspector's complaints about a part; None if nobody looks at it, or its answers do not have the form."""
-        if not (doubtful if self._looks == "together" else self._looks):
+        if not (self._looks if isinstance(self._looks, bool) else doubtful):
             return None
         step = f"look/{self._name}/{number}"
         try:

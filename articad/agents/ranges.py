@@ -179,7 +179,8 @@ def _extents(joint: Joint, name: str, unit: Unit, least: float, most: float) -> 
     if unit == "mm":
         yield Extents(joint, "mm", least if math.isfinite(least) else 0.0, most)  # how far what has no end was meant to go is open
         return
-    most = 2 * most if name == "tilt" else most  # from one side to the other, not only from the axis
+    if joint.type is JointType.BALL and name == "tilt":
+        most = 2 * most  # from one side to the other, not only from the axis
     yield Extents(joint, "degrees", math.degrees(least) if math.isfinite(least) else _TURN, math.degrees(most))
     if joint.type is JointType.SCREW:
         advance = abs(joint.lead) / (2 * math.pi)

@@ -84,28 +84,22 @@ class Requirements(ReplyForm):
         document: dict[str, Any] = self.model_dump(mode="json", by_alias=True, exclude=set() if self.open_ended else {"open_ended"})
         return document
 
-    def told(self, fields: Sequence[str] | None = None, *, described: bool = True) -> str:
-        """Return the analysis, or some of its fields, as a prompt holds it: a line for each thing, without the name of its form.
-
-        Args:
-            fields: All by default.
-            described: Whether components are described, not only named and counted.
-        """
+    def told(self, fields: Sequence[str] | None = None) -> str:
+        """Return the analysis, or some of its fields, as a prompt holds it: a line for each thing, without the name of its form."""
         lines: list[str] = []
         for name in type(self).model_fields if fields is None else fields:
             stated = getattr(self, name)
             if isinstance(stated, tuple):
-                lines += [f"{name}:{'' if stated else ' none'}", *(f"- {_one_line(_text(entry, described=described))}" for entry in stated)]
+                lines += [f"{name}:{'' if stated else ' none'}", *(f"- {_one_line(_text(entry))}" for entry in stated)]
             elif name not in {"form", "open_ended"} or stated is True:
                 lines.append(f"{name}: {_one_line(str(stated))}")
         return "\n".join(lines)
 
 
-def _text(stated: Component | Motion | Dimension | str, *, described: bool) -> str:
+def _text(stated: Component | Motion | Dimension | str) -> str:
     match stated:
         case Component():
-            named = f"{stated.name}{f' ({stated.count} of them)' if stated.count > 1 else ''}"
-            return f"{named}: {stated.description}" if described else named
+            return f"{stated.name}{f' ({stated.count} of them)' if stated.count > 1 else ''}: {stated.description}"
         case Motion():
             return f"{stated.component} {stated.kind} against {stated.relative_to}; axis: {stated.axis}; range: {stated.range}"
         case Dimension():

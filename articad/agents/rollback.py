@@ -98,7 +98,9 @@ class Router:
         for finding in opinions:
             self._tried.setdefault(_signature(finding), []).append("design")
 
-    def decide(self, number: int, findings: Iterable[Finding], resolved: ResolvedPlan, scripts: Mapping[str, bytes]) -> Repair:
+    def decide(
+        self, number: int, findings: Iterable[Finding], resolved: ResolvedPlan, scripts: Mapping[str, bytes], *, every: bool = False
+    ) -> Repair:
         """Decide who must act on a round's findings.
 
         Args:
@@ -106,11 +108,12 @@ class Router:
             findings: What it found.
             resolved: The plan.
             scripts: Of the parts that were built, by name.
+            every: Whether all findings are due, as those of parts that could not be made are.
 
         Raises:
             OutputError: If a model must be asked and its replies do not have the form.
         """
-        failures = self.due(findings)
+        failures = list(findings) if every else self.due(findings)
         routes = {index: _route(finding, resolved, scripts) for index, finding in enumerate(failures)}
         open_ones = [index for index, route in routes.items() if route is None]
         if open_ones:
@@ -198,5 +201,7 @@ def _is_due_once(finding: Finding) -> bool:
 
 def _signature(finding: Finding) -> _Signature:
     """Return what identifies a finding with an earlier one; a fault that has become smaller counts as a new one."""
+    if is_fault_of_joint(finding):  # asked about once, however large it is then
+        return finding.code, (finding.where,), finding.cause, ""
     value = "" if finding.value is None else f"{finding.value:.2g}"
     return finding.code, tuple(sorted(finding.parts)), finding.cause, value

@@ -143,7 +143,7 @@ ASKING = (
         "--look",
         action="store_true",
         default="together",
-        help="compare pictures of each part with its specification in a request of its own (of up to six parts in one)",
+        help="compare pictures of each part with its specification in a request of its own (by default up to six parts in one request)",
     ),
     argument("--no-look", dest="look", action="store_false", default="together", help="compare no pictures of parts"),
     argument("--no-inspection", dest="inspection", action="store_false", help="do not let models observe and judge the assembly"),

@@ -13,6 +13,8 @@ from articad.geometry.mesh import TriMesh
 
 _RADIUS: Final = re.compile(r"radius|(^|_)r(_|$)")
 _DIAMETER: Final = re.compile(r"diameter|(^|_)(d|dia)(_|$)")
+_NO_FACE: Final = re.compile(r"crank|throw|pitch|circle|bend|edge|fillet|corner|round|swing|orbit|path|cent(re|er)|distance|offset")
+"""Words of radii on which features lie, or of edges: the solid need not have a round face of that size."""
 _SAME: Final = 2e-3  # difference of two radii, as a share: a mesh has that of a cylinder to a few 1e-4
 _ROUND: Final = ("cylinder", "sphere")
 
@@ -63,7 +65,7 @@ def _is_round(name: str) -> bool:
 def _mistaken(faces: Iterable[Face], lengths: Mapping[str, float]) -> Iterator[_Mistaken]:
     radii = {face.radius for face in faces if face.kind in _ROUND}
     for name, value in lengths.items():
-        if value <= 0 or not _is_round(name):
+        if value <= 0 or not _is_round(name) or _NO_FACE.search(name):
             continue
         stated = value if _is_radius(name) else value / 2
         if any(_same(radius, stated) for radius in radii):

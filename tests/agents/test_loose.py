@@ -10,8 +10,10 @@ import pytest
 
 from articad.agents.evidence import Evidence, examine
 from articad.agents.llm import Scripted
+from articad.agents.part_builder import PartsError
 from articad.agents.rollback import Router
 from articad.assembly import Assembly
+from articad.errors import ContractError
 from articad.findings import Finding
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
@@ -47,6 +49,16 @@ def test_a_joint_that_leaves_its_guide_and_holes_that_do_not_meet_are_asked_abou
     assert bool(router.due([found])) == is_due
     assert list(router.decide(1, [found], plan, {}).design) == ([found] if is_due else [])
     assert not router.due([found])
+
+
+def test_whatever_no_script_could_mend_reaches_the_designer() -> None:
+    plan = resolve(AssemblyPlan.from_json(document()))
+    where = "parts.wheel.dimensions.bore"
+    found = Finding(code="W_RADIUS_MISTAKEN", where=where, parts=("wheel",), message="so", hint="do", route="code")
+    failed = PartsError({"wheel": ContractError("so", findings=(found,), parts=("wheel",))}, 2)
+
+    told = Router(Scripted({})).decide(1, failed.for_design, plan, {}, every=True)
+    assert [(finding.code, finding.parts) for finding in told.design] == [("W_RADIUS_MISTAKEN", ("wheel",))]
 
 
 @pytest.mark.parametrize(("bore", "loose"), [(4.0, False), (4.7, False), (5.3, True), (8.0, True)])

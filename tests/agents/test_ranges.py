@@ -387,3 +387,13 @@ def test_no_motion_of_a_recorded_run_is_complained_about() -> None:
             compared += sum(bool(ranges.spans_of(one)) for one in motions)
             assert not [*ranges.planned(plan, motions), *ranges.built(bare(plan), motions)], folder.name
     assert compared > 40
+
+
+def test_a_hinge_with_the_name_of_a_balls_tilt_is_measured_once() -> None:
+    none = SE3.identity()
+    hinge = joint("tilt", "revolute", ("base", none), ("arm", none), limits=[(0.0, 0.5)])
+    ball = joint("head", "ball", ("base", none), ("arm", none))
+    (one,), (both,) = ranges._extents(hinge, "tilt", "rad", 0.5, 0.5), ranges._extents(ball, "tilt", "rad", 0.5, 0.5)
+
+    assert one.most == pytest.approx(math.degrees(0.5))
+    assert both.most == pytest.approx(2 * math.degrees(0.5))

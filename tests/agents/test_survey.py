@@ -61,20 +61,26 @@ def test_a_script_that_departs_goes_back_to_its_author_and_the_others_stay(tmp_p
 
 
 def test_an_author_may_stand_by_a_script_and_the_opinion_stays_a_warning(tmp_path: Path) -> None:
-    complaint = stories.looks("shape")
-    llm = model(
-        parts__plate__1=answer(**ROW),
-        survey__plate__1=finds("bob"),
-        part__bob__2=fenced(PEG),
-        part__bob__3=fenced(PEG),
-        look__bob__2=complaint,
-    )
+    llm = model(parts__plate__1=answer(**ROW), survey__plate__1=finds("bob"), part__bob__2=fenced(PEG))
     run = made(tmp_path / "run", llm, inspection=True)
 
-    assert [step for step in llm.steps if "bob" in step] == ["part/bob/2", "look/bob/2", "part/bob/3"]
+    assert [step for step in llm.steps if "bob" in step] == ["part/bob/2"]
     verdict = run.verdict() or {}
     assert verdict["ok"]
     assert [(finding["code"], finding["parts"]) for finding in verdict["findings"]] == [("W_LOOK_SHAPE", ["bob"])]
+
+
+@pytest.mark.parametrize(
+    "wrong", [fenced("def build(part):\n    return None"), '{"cannot_be_built": "it is as ordered"}'], ids=["scripts fail", "refused"]
+)
+def test_an_opinion_loses_no_part_whose_author_builds_no_better_one(wrong: str, tmp_path: Path) -> None:
+    llm = model(parts__plate__1=answer(**ROW), survey__plate__1=finds("bob"), **{"part__bob__*": wrong})
+    run = made(tmp_path / "run", llm, inspection=True)
+
+    assert run.script("bob") == PEG.encode().lstrip()
+    assert (run.checks() or {})["ok"]
+    assert [finding["code"] for finding in (run.verdict() or {})["findings"]] == ["W_LOOK_SHAPE"]
+    assert not [step for step in llm.steps if step == "design/2"]
 
 
 def test_an_order_that_cannot_be_meant_goes_to_the_designer(tmp_path: Path) -> None:

@@ -81,6 +81,15 @@ def test_a_face_that_another_dimension_explains_is_another_face(more: dict[str, 
     assert not radius_findings("plate", mesh, lengths | {"bore_radius": radius} | scaled)
 
 
+@pytest.mark.parametrize("name", ["crank_radius", "bolt_circle_diameter", "pitch_radius", "edge_radius", "bend_radius"])
+def test_a_radius_on_which_features_lie_or_of_an_edge_needs_no_face(name: str) -> None:
+    lengths = sizes(2)
+    mesh = plate(lengths)
+    diameter = 2.0 if name.endswith("diameter") else 1.0
+    for times in (0.5, 2.0):
+        assert not radius_findings("plate", mesh, lengths | {name: diameter * times * lengths["bore_radius"]})
+
+
 def test_names_that_state_neither_a_radius_nor_a_diameter_say_nothing() -> None:
     lengths = sizes(1)
     mesh = plate(lengths, bore_radius=2 * lengths["bore_radius"])
