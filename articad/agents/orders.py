@@ -124,7 +124,7 @@ class _Joined(NamedTuple):
 
 def is_fault_of_joint(finding: Finding) -> bool:
     """Return whether a warning about a joint must be answered once: it leaves its guide, a pin is loose in its bore, or holes do not meet."""
-    return finding.code in {APART, "W_JOINT_LEAVES"} or (finding.code in HELD and is_loose(finding))
+    return finding.code == APART or (finding.code in HELD and is_loose(finding))
 
 
 def addressed(findings: Iterable[Finding], assembly: Assembly, scene: Scene, verdicts: Iterable[PairCheck] = ()) -> Findings:

@@ -40,6 +40,7 @@ _UP = 0.9  # cosine: a direction in which the weight holds a part
 _ASIDE = 0.1  # the same of a normal, below which a face is across a way
 _OVER = 0.3  # the same for a way aslant, over a flank that stops the straight way
 _SHORT_MM = 1.0  # guides shorter than this have no share
+_WAYS: Final = "ways"  # unit of a number of ways along or about which nothing ends a motion
 LOOSE_MM: Final = 1.0  # play across the axis of a pin in its bore: more is no clearance
 _NAMES: Final = ("x", "y", "z", "about x", "about y", "about z")
 
@@ -180,8 +181,8 @@ def check_joints(
 
 
 def is_loose(finding: Finding) -> bool:
-    """Return whether a finding about a joint says that its pin has more play across its axis than `LOOSE_MM`."""
-    return finding.unit == "mm" and finding.value is not None and finding.limit is not None and finding.value > finding.limit
+    """Return whether a finding about a joint says that its pin has more play across its axis than `LOOSE_MM`, or that it leaves its guide in some way."""
+    return finding.unit in ("mm", _WAYS) and finding.value is not None and finding.limit is not None and finding.value > finding.limit
 
 
 class _Examined:
@@ -440,6 +441,9 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
     pose = None if row.at is None else dict(row.at)
     play = _play_across(row)
     across: dict[str, Any] = {} if play is None else {"value": play, "limit": LOOSE_MM, "unit": "mm"}
+    lost = sum(math.isinf(loss.room) and not loss.by_weight for loss in row.losses)
+    if row.at is not None and lost:
+        across = {"value": float(lost), "limit": 0.0, "unit": _WAYS}
     if row.verdict == "not made":
         yield Finding(
             code="W_JOINT_NOT_MADE",

@@ -39,12 +39,25 @@ def examined(plan: dict[str, Any], wheel: str) -> Evidence:
     return examine(Assembly.from_plan(AssemblyPlan.from_json(plan), scripts, kernel=stories.kernel(), cache=stories.shared_cache(), jobs=1))
 
 
-@pytest.mark.parametrize("code", ["W_JOINT_LEAVES", "W_HOLES_APART", "W_JOINT_SHORT", "W_JOINT_NOT_MADE"])
-def test_a_joint_that_leaves_its_guide_and_holes_that_do_not_meet_are_asked_about_once(code: str) -> None:
+LOST = {"value": 5.0, "limit": 0.0, "unit": "ways"}
+
+
+@pytest.mark.parametrize(
+    ("code", "measured", "is_due"),
+    [
+        ("W_JOINT_LEAVES", LOST, True),
+        ("W_JOINT_LEAVES", {}, False),  # it only tilts
+        ("W_HOLES_APART", {}, True),
+        ("W_JOINT_SHORT", {"value": 0.2, "limit": 0.25}, False),
+        ("W_JOINT_NOT_MADE", {}, False),
+    ],
+)
+def test_a_joint_that_leaves_its_guide_and_holes_that_do_not_meet_are_asked_about_once(
+    code: str, measured: dict[str, Any], is_due: bool
+) -> None:
     plan = resolve(AssemblyPlan.from_json(document()))
-    found = Finding(code=code, where="joints.turn", parts=("post", "wheel"), message="so", hint="do", route="design")
+    found = Finding(code=code, where="joints.turn", parts=("post", "wheel"), message="so", hint="do", route="design", **measured)
     router = Router(Scripted({}))
-    is_due = code in {"W_JOINT_LEAVES", "W_HOLES_APART"}
 
     assert bool(router.due([found])) == is_due
     assert list(router.decide(1, [found], plan, {}).design) == ([found] if is_due else [])
