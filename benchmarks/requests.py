@@ -8,7 +8,7 @@ pictures are counted by themselves. A section is a stretch of a prompt that begi
 
 With --again, eight recorded products are made again with the present prompts and options, and what is asked for them is compared with what
 was asked when they were recorded. They are answered as recorded, but for a slip in five plans and in two scripts, each of which a further request mends:
-so they ask 53 times, as often as when a model answered them all again. Exit code 1 if fewer than 40 % of the characters are saved.
+in a trial a model made as many. Exit code 1 if fewer than 40 % of the characters are saved.
 """
 
 from __future__ import annotations
