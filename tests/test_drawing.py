@@ -62,7 +62,8 @@ def test_a_second_build_of_the_same_product_draws_nothing_and_has_the_same_pictu
 def test_a_drawing_process_that_crashes_takes_no_result_with_it(
     product: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], ended: launcher.Ended
 ) -> None:
-    monkeypatch.setattr(drawing, "launcher", SimpleNamespace(run=lambda *_, **__: ended, Limits=launcher.Limits))
+    stand_in = {name: getattr(launcher, name) for name in ("Limits", "OWN", "environment")} | {"run": lambda *_, **__: ended}
+    monkeypatch.setattr(drawing, "launcher", SimpleNamespace(**stand_in))
     monkeypatch.setattr(drawing, "_RECIPE", "another")  # nothing of it is in the cache
 
     assert cli.main(["build", str(product), "--out", str(tmp_path / "run"), "--export", "urdf"]) == 0
