@@ -10,6 +10,7 @@ import numpy as np
 from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
+from articad.export.hulls import rigid_groups
 from articad.kinematics.joints import JointType
 
 _AXES: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
@@ -24,25 +25,20 @@ def spacings(assembly: Assembly) -> list[str]:
 
     A piece is a part with all that fixed joints join to it: the throw of a crank lies between its shaft and a pin of its own.
     """
-    leader = {name: name for name in assembly.parts}
-    for joint in assembly.joints:
-        if joint.type is JointType.FIXED:
-            old, new = leader[joint.child], leader[joint.parent]
-            leader |= {name: new for name, led in leader.items() if led == old}
-    rest = assembly.at()
-    frames: dict[str, dict[str, tuple[JointType, SE3]]] = {name: {} for name in assembly.parts}
+    piece, rest = rigid_groups(tuple(assembly.joints), tuple(assembly.parts)), assembly.at()
+    frames: dict[int, dict[str, tuple[JointType, SE3]]] = {piece[name]: {} for name in assembly.parts}
     for joint in assembly.joints:
         if joint.type in _AXES or joint.type in _POINTS:
             for name, frame in ((joint.parent, joint.T_parent_connector), (joint.child, joint.T_child_connector)):
-                frames[leader[name]][joint.name] = joint.type, rest[name] @ frame
+                frames[piece[name]][joint.name] = joint.type, rest[name] @ frame
     lines = []
-    for name, own in frames.items():
+    for number, own in frames.items():
         found = [(a, b, _apart(own[a], own[b])) for a, b in itertools.combinations(own, 2)]
         told = [f"{a} to {b} {round(distance, 2):g}" for a, b, distance in found if distance > _LEAST_MM]
         if told:
-            held = "".join(f" and {part}" for part, led in leader.items() if led == name and part != name)
+            members = " and ".join(name for name in assembly.parts if piece[name] == number)
             more = f" and {len(told) - MOST} more" if len(told) > MOST else ""
-            lines.append(f"- {name}{held}: {', '.join(told[:MOST])}{more}")
+            lines.append(f"- {members}: {', '.join(told[:MOST])}{more}")
     return lines
 
 

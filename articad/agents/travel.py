@@ -10,8 +10,8 @@ import numpy as np
 
 from articad.arrays import FloatArray
 from articad.assembly import Assembly
-from articad.kinematics.joints import Coordinate, Joint, JointType, Unit, swing, twist
-from articad.render.pictures import motion_frames
+from articad.kinematics.joints import Joint, JointType, Unit, swing, twist
+from articad.render.pictures import driver_range, motion_frames
 
 FOLLOWED: Final = 61  # poses of each driver's range: a turn in steps of 6°, its half included
 _STILL: Final = 1e-6  # rad, mm: what moves less stands still
@@ -119,19 +119,11 @@ def _sweeps(assembly: Assembly) -> list[DriverSweep]:
         columns = mechanism.configuration(motion_frames(assembly, joint, FOLLOWED)[1]).columns
         rows = columns.reshape(-1, FOLLOWED, columns.shape[-1])
         own = [driver for driver in assembly.drivers if driver.joint == joint and driver.unit != "1"]
-        endless = [not all(map(math.isfinite, _ends(assembly, driver))) for driver in own] or [False] * len(
+        endless = [not all(map(math.isfinite, driver_range(assembly, driver))) for driver in own] or [False] * len(
             rows
         )  # a ball stays in its cone
         sweeps += map(DriverSweep, rows, endless)
     return sweeps
-
-
-def _ends(assembly: Assembly, driver: Coordinate) -> tuple[float, float]:
-    """Return how far a driver goes: in a loop, a dead point or another joint may stop it before its own limits."""
-    if assembly.mechanism.is_tree:
-        return driver.lower, driver.upper
-    feasible = assembly.feasible_range(driver.name)
-    return feasible.lower, feasible.upper
 
 
 def _driven(assembly: Assembly, joint: Joint) -> list[CoordinateTravel]:
@@ -145,7 +137,7 @@ def _driven(assembly: Assembly, joint: Joint) -> list[CoordinateTravel]:
     found = []
     for driver in assembly.drivers:
         if driver.joint == joint.name:
-            lower, upper = _ends(assembly, driver)
+            lower, upper = driver_range(assembly, driver)
             found.append(CoordinateTravel(driver.name, driver.unit, lower, upper, math.isinf(upper - lower), shared))
     return found
 

@@ -530,7 +530,7 @@ class _Model:
         """Return the assembly of a document that articad did not write."""
         joints, couplings = self.joined([], self.joints())
         joints += self.loose(joints)
-        of = joints_by_part(joints)
+        of = _joints_by_part(joints)
         parts = [self.part(name, of.get(name, ())) for name in self.parts]
         title = self.assembly.text("Label") or self.path.stem
         try:
@@ -689,7 +689,7 @@ def _updated(model: _Model, recorded: Assembly) -> Assembly:
     joints += model.loose(joints)
     known = {now: name for name, now in names.items()}
     order = [*(names[name] for name in recorded.parts if name in names), *(name for name in model.parts if name not in known)]
-    of = joints_by_part(joints)
+    of = _joints_by_part(joints)
     parts = {
         name: _part_now(recorded.parts[known[name]], name, model, of.get(name, ()), densities, sizes, meshes)
         if name in known
@@ -1020,7 +1020,7 @@ def _reached(start: str, joints: list[Joint]) -> set[str]:
     return found
 
 
-def joints_by_part(joints: Iterable[Joint]) -> dict[str, list[Joint]]:
+def _joints_by_part(joints: Iterable[Joint]) -> dict[str, list[Joint]]:
     """Return the joints of each part that has any."""
     found: dict[str, list[Joint]] = {}
     for joint in joints:

@@ -300,7 +300,7 @@ def motion_frames(assembly: Assembly, joint: str, count: int = FRAMES) -> tuple[
         if driver.joint != joint:
             continue
         free = 2 * math.pi if driver.unit == "rad" else _FREE_TRAVEL * size
-        lower, upper = _range(assembly, driver)
+        lower, upper = driver_range(assembly, driver)
         lower = lower if math.isfinite(lower) else driver.rest
         upper = upper if math.isfinite(upper) else lower + free
         for value in np.linspace(lower, upper, count):
@@ -481,8 +481,12 @@ def _pixel(bounds: FloatArray, size: int) -> float:
     return float(np.ptp(bounds, axis=0).max()) / size
 
 
-def _range(assembly: Assembly, driver: Coordinate) -> tuple[float, float]:
-    """Return the actual range of a driver: in a loop, a dead point or another joint may stop it before its own limits."""
+def driver_range(assembly: Assembly, driver: Coordinate) -> tuple[float, float]:
+    """Return how far a driver goes [rad or mm]: in a loop, a dead point or another joint may stop it before its own limits.
+
+    Raises:
+        UnknownJointError: If the assembly has no such driver.
+    """
     if assembly.mechanism.is_tree:
         return driver.lower, driver.upper
     feasible = assembly.feasible_range(driver.name)
@@ -556,7 +560,7 @@ def _turns_far(assembly: Assembly, joint: str, index: int) -> bool:
         twist = declared.limits.twist
         return index == len("xyz") - 1 and (twist is None or twist[1] - twist[0] > math.pi)
     driver = [entry for entry in assembly.drivers if entry.joint == joint][index]
-    lower, upper = _range(assembly, driver)
+    lower, upper = driver_range(assembly, driver)
     return driver.unit == "rad" and upper - lower > math.pi + 1e-6
 
 
