@@ -164,7 +164,7 @@ def print_support(report: Report, terminal: Terminal) -> None:
 
 def print_order(report: Report, terminal: Terminal) -> None:
     """Print the steps of an order of assembly, each with its path."""
-    from articad.disassembly.steps import beside_words, turned_over
+    from articad.disassembly.steps import ENDED, beside_words, turned_over
 
     for step in report["steps"]:
         what = f"{step['subassembly']} ({', '.join(step['parts'])})" if step["subassembly"] else ", ".join(step["parts"])
@@ -180,7 +180,7 @@ def print_order(report: Report, terminal: Terminal) -> None:
             path += f", to {beside_words(step['beside'][step['parts'][0]])}"
         terminal.say(f"{step['number']:3}. {step['assembly']}: {what} {path}; {step['strength']}{forced}")
     for blocked in report["blocked"]:
-        terminal.say(f"No order puts these together: {', '.join(blocked['parts'])}.")
+        terminal.say(f"No order was found that puts these together: {', '.join(blocked['parts'])}.{ENDED if blocked['ended'] else ''}")
     if report["left_out"]:
         terminal.say(f"Not considered, without a valid solid: {', '.join(report['left_out'])}.")
     terminal.say(f"{len(report['steps'])} steps. Not checked: {report['not_checked'][0].lower()}{report['not_checked'][1:]}")

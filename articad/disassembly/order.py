@@ -14,12 +14,11 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 
 from articad.aliases import Fastening
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
+from articad.disassembly.blocking import Blocking
 from articad.disassembly.opened import Proof, folded
 from articad.disassembly.poses import OtherPose
 from articad.disassembly.steps import AssemblyOrder, AssemblyStep, Blocked, Move, StopRow, Vector3
@@ -48,6 +47,7 @@ _FLAT: Final = 1e-6  # of a unit vector's height
 _LEAST_MM: Final = 0.3  # of the travel in a first direction: less is play
 _ASIDE: Final = 2  # atoms that move aside for others
 _MOST_ASIDE: Final = 6  # moves aside that are tried of each state, the farthest
+_MOST_COMPARED: Final = 50_000_000  # triangles of pairs of parts, in a minute or so; from there on only straight ways at rest are tried
 
 Atom = tuple[str, ...]  # parts that stay together for now
 
@@ -327,17 +327,23 @@ class _Taking:
             or self._after_others(left, base, ways)
         )
 
+    def _is_late(self) -> bool:
+        """Return whether so much was compared that only straight ways at rest are still tried."""
+        return self.ways.outlines.compared > _MOST_COMPARED
+
     def _after_others(self, left: Sequence[Atom], base: str, ways: Ways) -> _Removal | None:
         """Return what can leave when one or two atoms have moved aside, each in a straight line as far as others let it."""
         states: list[tuple[_Aside, ...]] = [()]
         for _ in range(_ASIDE):
             further: dict[frozenset[tuple[float | str, ...]], tuple[_Aside, ...]] = {}
             for state in states:
-                for aside in self._asides(left, base, state[-1].after if state else ways):
+                for aside in [] if self._is_late() else self._asides(left, base, state[-1].after if state else ways):
                     chosen = (*state, aside)
                     further.setdefault(frozenset((*each.atom, *each.offset.tolist()) for each in chosen), chosen)
             states = list(further.values())
             for state in states:
+                if self._is_late():
+                    return None
                 after = state[-1].after
                 found = self._removable(left, base, after) or self._in_two_moves(left, base, after)
                 if found is not None:
@@ -352,7 +358,7 @@ class _Taking:
                 continue
             rest = [name for other in left if other != atom for name in other]
             for way in distinct([*np.eye(3), *self._joint_axes(atom, ways)]):
-                travel = ways.stop(atom, rest, way).travel
+                travel = ways.stop(atom, rest, way, least=CLEAR_MM).travel
                 if CLEAR_MM < travel < np.inf:
                     found.append((travel, _Aside(atom, _STEPS[0] * travel * way, ways)))
         return [aside for _, aside in sorted(found, key=lambda row: -row[0])[:_MOST_ASIDE]]
@@ -391,6 +397,8 @@ class _Taking:
     def _elsewhere(self, left: Sequence[Atom], base: str) -> _Removal | None:
         """Return what can leave in another configuration."""
         for ways, at in self.open:
+            if self._is_late():
+                return None
             found = self._removable(left, base, ways, at)
             if found is not None:
                 return found
@@ -402,6 +410,8 @@ class _Taking:
             return None
         parts = [name for atom in left for name in atom]
         for pose in folded(self.scene, self.mechanism, parts, base):
+            if self._is_late():
+                return None
             ways = Ways(self.scene, {**self.poses, **pose.poses}, self.forced, self.ways.outlines)
             found = self._removable(left, base, ways, {pose.joint: pose.value})
             if found is not None and self.proof(pose.mechanism, pose.joint):
@@ -461,7 +471,9 @@ class _Taking:
             rest = [name for other in left if other != atom for name in other]
             directions = distinct([*np.eye(3), *self._joint_axes(atom, ways)])
             for first in directions:
-                travel = ways.stop(atom, rest, first).travel
+                if self._is_late():
+                    return None
+                travel = ways.stop(atom, rest, first, least=_LEAST_MM).travel
                 if not _LEAST_MM < travel < np.inf:
                     continue
                 for share in _STEPS:
@@ -505,22 +517,18 @@ class _Taking:
 
     def _leaving(self, left: Sequence[Atom], base: str, way: FloatArray, ways: Ways) -> Iterator[tuple[tuple[Atom, ...], FloatArray]]:
         """Yield the smallest sets that leave along a direction, the base not among them, and their direction."""
-        blocks = np.array([[a is not b and any(ways.blocks(p, q, way) for p in a for q in b) for b in left] for a in left])
-        count, label = connected_components(csr_array(blocks), directed=True, connection="strong")
-        if count < 2:
-            return
-        crossing = blocks & (label[:, None] != label[None])
-        for group in range(count):
-            inside = label == group
-            if crossing[inside].any():
+        blocking = Blocking(
+            len(left),
+            lambda i, j: any(ways.blocks(p, q, way) for p in left[i] for q in left[j]),
+            lambda i, j: sum(ways.often(p, q) for p in left[i] for q in left[j]),
+        )
+        for inside in blocking.closed(range(len(left))):
+            if not any(base in left[at] for at in inside):
+                yield tuple(left[at] for at in inside), way
                 continue
-            chosen, direction = inside, way
-            if any(base in left[at] for at in np.flatnonzero(inside).tolist()):
-                if not inside.all() and count == 2:  # all others leave the base, the opposite way
-                    chosen, direction = ~inside, -way
-                else:
-                    continue
-            yield tuple(left[at] for at in np.flatnonzero(chosen).tolist()), direction
+            others = [at for at in range(len(left)) if at not in inside]
+            if others and blocking.closed(others) == [others]:  # all others leave the base together, the opposite way
+                yield tuple(left[at] for at in others), -way
 
     def _key(self, atoms: tuple[Atom, ...], left: Sequence[Atom], way: FloatArray, rank: int, met: float = 0.0) -> tuple[float, ...]:
         names = [name for atom in atoms for name in atom]
@@ -574,7 +582,7 @@ class _Taking:
                 if stop.by is not None:
                     own.append(StopRow(part=name, direction=_vector(way), travel_mm=round(stop.travel, _ROUNDED), by=stop.by))
             rows += sorted(own, key=lambda row: -row.travel_mm)
-        self.blocked.append(Blocked(parts=names, stops=tuple(rows), remedy=self._remedy(names)))
+        self.blocked.append(Blocked(parts=names, stops=tuple(rows), remedy=self._remedy(names), ended=self._is_late()))
 
     def _remedy(self, names: Sequence[str]) -> str:
         joints = [joint for joint in self.joints if {joint.parent, joint.child} <= set(names)]

@@ -1,4 +1,4 @@
-"""The form of an order of assembly: its steps with their paths, and the parts that no order can take."""
+"""The form of an order of assembly: its steps with their paths, and the parts for which none was found."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from articad.aliases import Fastening
 from articad.arrays import FloatArray
 from articad.findings import Finding, Findings
 
-__all__ = ["AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow", "beside_words", "shown_path", "turned_over", "words_of"]
+__all__ = ["ENDED", "AssemblyOrder", "AssemblyStep", "Blocked", "Move", "StopRow", "beside_words", "shown_path", "turned_over", "words_of"]
 
 _SHOWN: Final = (0.14, 0.75)  # of the size of what is shown: least and largest distance of new parts from their place
 _FROM: Final = {
@@ -33,6 +33,7 @@ _AXIS: Final = 1e-6  # of a unit vector: it points along an axis
 
 Vector3 = tuple[float, float, float]
 
+ENDED = " The search ended at its limit of work: not every other pose and not every pair of moves was tried."
 NOT_CHECKED = "Parts are rigid; room for hands and tools, the order of adhesives, and whether a step needs a fixture are not checked."
 
 
@@ -177,17 +178,19 @@ class StopRow(_Form):
 
 
 class Blocked(_Form):
-    """Parts that cannot be taken apart: no order puts them together.
+    """Parts that the search could not take apart, so that it found no order that puts them together.
 
     Attributes:
         parts: The parts that hold each other.
         stops: For each of them the directions that were tried, those of longest travel first.
         remedy: What can be done.
+        ended: Whether the search ended at its limit of work; then not all other poses, pairs of moves and moves aside were tried.
     """
 
     parts: tuple[str, ...]
     stops: tuple[StopRow, ...]
     remedy: str
+    ended: bool = False
 
 
 class AssemblyOrder(_Form):
@@ -198,7 +201,7 @@ class AssemblyOrder(_Form):
         name: Of the assembly.
         base: The part that everything is put onto.
         steps: In order; a sub-assembly is made before it is put in place.
-        blocked: Sets of parts that no order can take; they are put in place together.
+        blocked: Sets of parts for which no order was found; they are put in place together.
         left_out: Parts without a valid solid, of which nothing is known.
         not_checked: What this does not say.
     """
@@ -218,7 +221,7 @@ class AssemblyOrder(_Form):
 
     @property
     def findings(self) -> Findings:
-        """A warning for each set of parts that no order can take."""
+        """A warning for each set of parts for which no order was found."""
         return Findings(_finding(blocked) for blocked in self.blocked)
 
     def to_json(self) -> dict[str, Any]:
@@ -241,6 +244,7 @@ def _finding(blocked: Blocked) -> Finding:
         code="W_NOT_INSERTABLE",
         where=f"parts.{blocked.parts[0]}",
         parts=blocked.parts,
-        message=f"No order was found in which {' and '.join(blocked.parts)} get to their places one after the other, in one or two straight moves each: {ways}.",
+        message=f"No order was found in which {' and '.join(blocked.parts)} get to their places one after the other, in one or two straight moves each: {ways}."
+        f"{ENDED if blocked.ended else ''}",
         hint=blocked.remedy,
     )

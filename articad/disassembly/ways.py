@@ -28,6 +28,7 @@ __all__ = ["CLEAR_MM", "Halt", "LastOutlines", "WayOut", "Ways", "ways_of", "way
 
 CLEAR_MM: Final = 1.0  # a part this far beyond everything else has left
 SAME_DIRECTION: Final = 1e-6  # length of the difference of unit vectors
+_EACH_PAIR: Final = 2000  # triangles that take as long to compare as all else that a pair takes
 _KEPT_TRIANGLES: Final = 1 << 20  # of all outlines that are kept, of 121 bytes each: 127 MB
 
 
@@ -96,6 +97,7 @@ class LastOutlines:
         self._vertices: dict[tuple[str, float], FloatArray] = {}
         self._kept: OrderedDict[tuple[str, float, bytes, bytes], Outline] = OrderedDict()
         self.triangles = 0  # of all that are kept
+        self.compared = 0  # triangles of all pairs that were compared: a measure of work that no machine's load changes
 
     def of(self, part: str, depth: float, pose: SE3, direction: FloatArray) -> Outline:
         """Return a part, its surface moved inwards by a depth [mm], at `T_ground_part` as seen along a unit vector `(3,)`."""
@@ -137,8 +139,9 @@ class Ways:
         self.offsets: Mapping[str, FloatArray] = {}
         self._in_place = poses
         self._directions: list[FloatArray] = []
+        self._numbers: dict[bytes, tuple[int, int]] = {}
         self._known: dict[_Key, tuple[float, float]] = {}
-        self._meets: dict[_Key, tuple[bool, bool]] = {}
+        self._meets: dict[tuple[_Key, int], bool] = {}
         self._met: dict[tuple[str, str, int, int, tuple[float, ...]], float] = {}
         self._stops: Counter[tuple[str, str]] = Counter()
 
@@ -178,9 +181,9 @@ class Ways:
         key, side = self._key(part, other, direction, offset)
         if key in self._known:
             return math.isfinite(self._known[key][side])
-        if key not in self._meets:
-            self._meets[key] = meets(*self._seen(key))
-        return self._meets[key][side]
+        if (key, side) not in self._meets:
+            self._meets[key, side] = meets(*self._seen(key), forwards=side == 0)
+        return self._meets[key, side]
 
     def stop(
         self,
@@ -190,6 +193,7 @@ class Ways:
         *,
         offset: FloatArray | None = None,
         strict: bool = False,
+        least: float = -math.inf,
     ) -> Halt:
         """Return what first stops parts that move together.
 
@@ -199,16 +203,18 @@ class Ways:
             direction: Unit vector `(3,)`.
             offset: By which they have moved before `(3,)` [mm].
             strict: Whether permitted pairs stop each other, too.
+            least: A travel that is not more is not looked into any further [mm]: others may stop the parts even earlier.
         """
         staying = tuple(staying)
         first = Halt(math.inf)
-        for part in moving:
-            for other in staying:
-                if not strict and frozenset((part, other)) in self.permitted:
-                    continue
-                travel = self.travel(part, other, direction, offset)
-                if travel < first.travel:
-                    first = Halt(travel, part, other)
+        pairs = [(part, other) for part in moving for other in staying if strict or frozenset((part, other)) not in self.permitted]
+        for pair in sorted(pairs, key=lambda pair: -self._stops[pair]) if math.isfinite(least) else pairs:
+            travel = self.travel(*pair, direction, offset)
+            if travel < first.travel:
+                first = Halt(travel, *pair)
+                if travel <= least:
+                    self._stops[pair] += 1
+                    break
         return first
 
     def free(self, moving: Iterable[str], staying: Iterable[str], direction: FloatArray, *, offset: FloatArray | None = None) -> bool:
@@ -243,7 +249,14 @@ class Ways:
 
     def blocks(self, part: str, other: str, direction: FloatArray) -> bool:
         """Return whether another part stops a part on its way to infinity."""
-        return frozenset((part, other)) not in self.permitted and self.meets(part, other, direction)
+        if frozenset((part, other)) in self.permitted or not self.meets(part, other, direction):
+            return False
+        self._stops[part, other] += 1
+        return True
+
+    def often(self, part: str, other: str) -> int:
+        """Return in how many directions another part was found in the way of a part."""
+        return self._stops[part, other]
 
     def points(self, part: str) -> FloatArray:
         """Return the vertices of a part in the ground frame, `(V, 3)` [mm]."""
@@ -274,13 +287,21 @@ class Ways:
         moved = self._outline(a, self.depth(a, b), at)
         if before:
             moved = moved.shifted(np.array(before), self._directions[at])
-        return moved, self._outline(b, 0.0, at)
+        stays = self._outline(b, 0.0, at)
+        self.outlines.compared += _EACH_PAIR + len(moved.height) + len(stays.height)
+        return moved, stays
 
     def _outline(self, part: str, depth: float, at: int) -> Outline:
         return self.outlines.of(part, depth, self._in_place[part], self._directions[at])
 
     def _index(self, direction: FloatArray) -> tuple[int, int]:
         """Return the number of a direction or of its opposite, and the sign."""
+        exactly = direction.tobytes()
+        if exactly not in self._numbers:
+            self._numbers[exactly] = self._numbered(direction)
+        return self._numbers[exactly]
+
+    def _numbered(self, direction: FloatArray) -> tuple[int, int]:
         for at, known in enumerate(self._directions):
             for sign in (1, -1):
                 if float(np.linalg.norm(direction - sign * known)) < SAME_DIRECTION:

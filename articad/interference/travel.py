@@ -22,6 +22,7 @@ _AT_ONCE: Final = 1 << 12  # pairs of triangles
 _GROUPS_AT_ONCE: Final = 1 << 10  # pairs of groups of triangles
 _GROUPS_UNTIL_MET: Final = 1 << 6  # the same where the first contact decides
 _BOXES_AT_ONCE: Final = 1 << 21  # pairs of boxes
+_FEW: Final = 128  # triangles that are examined before all
 _FLAT: Final = 1e-12  # of squared lengths: twice the area of a triangle that is seen edge-on
 _EDGE: Final = 1e-9  # of coordinates on edges and in triangles
 _SLIVER_MM: Final = 1e-9  # width of a triangle that is seen edge-on
@@ -87,6 +88,16 @@ class Outline:
         longest = np.sqrt((sides * sides).sum(axis=2).max(axis=1, initial=0.0))
         return np.asarray(np.abs(_cross(sides[:, 0], sides[:, 1])) > _SLIVER_MM * longest)
 
+    @cached_property
+    def few(self) -> Outline:
+        """The triangles that are seen largest, and some of all others: what mostly meets first, or the outline itself if it has no more."""
+        if len(self.flat) <= 2 * _FEW:
+            return self
+        sides = self.flat[:, 1:] - self.flat[:, :1]
+        largest = np.argpartition(np.abs(_cross(sides[:, 0], sides[:, 1])), -_FEW)[-_FEW:]
+        chosen = np.union1d(largest, np.arange(0, len(self.flat), len(self.flat) // _FEW))
+        return Outline(self.flat[chosen], self.height[chosen])
+
     def inside(self, low: FloatArray, high: FloatArray, *, wide: bool) -> IntArray:
         """Return the triangles whose boxes meet a box, neighbours after each other, `(k,)`; with `wide` those that are not seen edge-on."""
         meet = ((self.low <= high) & (self.high >= low)).all(axis=1)
@@ -117,13 +128,13 @@ def first_contacts(a: Outline, b: Outline) -> tuple[float, float]:
     return forwards, backwards
 
 
-def meets(a: Outline, b: Outline) -> tuple[bool, bool]:
-    """Return whether a meets b anywhere on its way along the direction of both outlines, and on its way back: where `first_contacts` is finite.
+def meets(a: Outline, b: Outline, *, forwards: bool) -> bool:
+    """Return whether a meets b anywhere on its way along the direction of both outlines, or on its way back: where `first_contacts` is finite.
 
-    The first contact on each way ends its search.
+    The first contact ends the search, which begins with a few triangles of each.
     """
-    forwards, backwards = _nearest(a, b, wide=True, any_contact=True)
-    return bool(np.isfinite(forwards)), bool(np.isfinite(backwards))
+    known, way = ((np.inf, 0.0), 0) if forwards else ((0.0, np.inf), 1)  # nothing is searched for on the other way
+    return any(np.isfinite(_nearest(*both, known, wide=True, any_contact=True)[way]) for both in ((a.few, b.few), (a, b)))
 
 
 def _nearest(

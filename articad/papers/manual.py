@@ -17,7 +17,7 @@ import numpy as np
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.disassembly.opened import step_poses
-from articad.disassembly.steps import AssemblyOrder, AssemblyStep, shown_path, words_of
+from articad.disassembly.steps import ENDED, AssemblyOrder, AssemblyStep, shown_path, words_of
 from articad.geometry.mesh import TriMesh
 from articad.kernels.views import Segment
 from articad.papers.callouts import balloons, spots_of
@@ -113,7 +113,7 @@ class _Manual:
             listed = ", ".join(str(step.number) for step in permitted)
             facts.append(f"Not proven, because parts are joined by force or bought as one: step {listed}.")
         facts += [
-            f"No order puts these together: {', '.join(blocked.parts)}. They are shown in place, which cannot be built so."
+            f"No order was found that puts these together: {', '.join(blocked.parts)}. They are shown in place.{ENDED if blocked.ended else ''}"
             for blocked in self.order.blocked
         ]
         facts += [f"Not considered, without a valid solid: {', '.join(self.order.left_out)}."] if self.order.left_out else []
@@ -205,7 +205,7 @@ class _Manual:
             far = ", then ".join(f"{move.length_mm:.4g} mm" for move in step.moves)
             lines.append(f"Path of {far}: proven free of collisions.")
         elif any(set(step.parts) == set(blocked.parts) for blocked in self.order.blocked):
-            lines.append("No order puts these parts together: they block each other.")
+            lines.append("No order was found that puts these parts together: they block each other.")
         return lines
 
     def _rows(self, step: AssemblyStep) -> list[tuple[str, ...]]:

@@ -103,6 +103,17 @@ def test_without_room_to_wait_the_parts_are_blocked() -> None:
     assert not locked(room=1.5).assembly_order().ok
 
 
+def test_a_search_that_ends_at_its_limit_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    blocked = locked(room=1.5).assembly_order().blocked
+    assert [each.ended for each in blocked] == [False]
+    monkeypatch.setattr("articad.disassembly.order._MOST_COMPARED", 0)
+    limited = locked().assembly_order()
+    assert [each.ended for each in limited.blocked] == [True]
+    (finding,) = limited.findings
+    assert finding.message.endswith("The search ended at its limit of work: not every other pose and not every pair of moves was tried.")
+    assert AssemblyOrder.from_json(limited.to_json()) == limited
+
+
 def test_the_words_say_that_a_part_waits_and_when_it_goes_to_its_place() -> None:
     _, hub, slide, back = map(words_of, order().steps)
     assert hub.startswith(f"Put hub {beside_words(order().steps[1].beside['hub'])}: ")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -111,7 +112,21 @@ def test_surfaces_meet_where_their_travel_is_finite(seed: int) -> None:
     way /= np.linalg.norm(way)
     T_b = SE3.from_translation(rng.uniform(-1, 1, 3) * (4, 12, 25)[seed % 3]) @ random_rotation(rng)
     both = Outline.of(corners(a, random_rotation(rng)), way), Outline.of(corners(b, T_b), way)
-    assert meets(*both) == tuple(math.isfinite(travel) for travel in first_contacts(*both))
+    forwards, backwards = (math.isfinite(travel) for travel in first_contacts(*both))
+    assert (meets(*both, forwards=True), meets(*both, forwards=False)) == (forwards, backwards)
+
+
+def test_what_no_few_triangles_show_is_found_among_all() -> None:
+    """A needle between the teeth of two fine combs: only one of 4,000 triangles meets it."""
+    comb = np.array([[[x, 0.0, 0.0], [x + 0.01, 0.0, 0.0], [x, 1.0, 0.0]] for x in np.arange(4000) * 0.02])
+    way = np.array([0.0, 0.0, 1.0])
+    for tooth in (1, 1777, 3999):
+        needle = comb[tooth : tooth + 1] * (0.5, 0.5, 1.0) + (0.5 * tooth * 0.02, 0.1, -3.0)
+        a, b = Outline.of(needle, way), Outline.of(comb, way)
+        assert meets(a, b, forwards=True)
+        assert not meets(a, b, forwards=False)
+        beside = Outline.of(needle + np.array([0.0125, 0.0, 0.0]), way)
+        assert not meets(beside, b, forwards=True)
 
 
 def test_whether_surfaces_meet_takes_fewer_triangles_than_where(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -119,7 +134,7 @@ def test_whether_surfaces_meet_takes_fewer_triangles_than_where(monkeypatch: pyt
     examined = {"meets": 0, "first_contacts": 0}
     way = np.array([1.0, 0.0, 0.0])
     ends = [Outline.of(corners(tube(4, 6, 80, 1000), SE3.from_translation((at, 1, 2))), way) for at in (0, 20)]
-    for name, asked in (("meets", meets), ("first_contacts", first_contacts)):
+    for name, asked in (("meets", partial(meets, forwards=True)), ("first_contacts", first_contacts)):
 
         def counted(p: np.ndarray, *rest: np.ndarray, name: str = name) -> np.ndarray:
             examined[name] += len(p)

@@ -157,7 +157,7 @@ def test_parts_that_no_order_takes_are_named_on_the_cover_and_on_their_page() ->
     product = Assembly.from_parts("closed", parts=parts, joints=[fixed("f", "box", "thing")], ground="box")
     made = list(manual_of(product, product.assembly_order(), items_of(product), dots=1.0))
     for page in (made[0], made[-1]):
-        assert "No order puts these" in " ".join(text.words for text in page.texts)
+        assert "No order was found that puts these" in " ".join(text.words for text in page.texts)
 
 
 def test_pdf_has_all_pages_and_svg_its_picture() -> None:
