@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import itertools
 import json
 import math
 import sys
@@ -49,7 +50,7 @@ FREE_RAD: Final = 0.15
 STEP_MM: Final = 0.25
 STEP_RAD: Final = 0.025
 DEEP_MM: Final = 0.02  # besides the deflections of the two meshes: what overlaps by less touches
-PIVOTS: Final = (5, 41)  # places along a joint's axis about which a tilt is tried; the second if it is stopped at all of the first
+PIVOTS: Final = (5, 41)  # places on each of two axes of a joint about which a tilt is tried; the second if it is stopped at all of the first
 
 Placed = Mapping[str, SE3]
 
@@ -126,12 +127,15 @@ def pushing(
 
 
 def tilt(scene: Scene, poses: Placed, movers: Sequence[str], still: Sequence[str], frame: SE3, axis: int) -> tuple[float, str | None]:
-    """Return how far parts turn about an axis of a frame, at the best of some places along the frame's z, up to FREE_RAD, and what stops them."""
-    heights = np.concatenate([(frame.inverse() @ poses[name]).apply(scene.meshes[name].vertices)[:, 2] for name in movers])
+    """Return how far parts turn about an axis of a frame, at the best of some pivots, up to FREE_RAD, and what stops them.
+
+    Pivots are on the two axes of the frame across that axis, over the length of the parts: a lever in a slot turns about the slot.
+    """
+    corners = np.concatenate([(frame.inverse() @ poses[name]).apply(scene.meshes[name].vertices) for name in movers])
     best: tuple[float, str | None] = (-1.0, None)
-    for height in np.concatenate([np.linspace(heights.min(), heights.max(), count) for count in PIVOTS]):
-        for sign in (1.0, -1.0):
-            about = frame @ SE3.from_translation(np.array([0.0, 0.0, height]))
+    for count, along in itertools.product(PIVOTS, [other for other in (2, 1, 0) if other != axis]):
+        for place, sign in itertools.product(np.linspace(corners[:, along].min(), corners[:, along].max(), count), (1.0, -1.0)):
+            about = frame @ SE3.from_translation(place * np.eye(3)[along])
             angle, stop = 0.0, None
             for step in np.arange(STEP_RAD, FREE_RAD + STEP_RAD / 2, STEP_RAD):
                 stop = collides(
@@ -276,7 +280,7 @@ Each finding is tried on the meshes by a method that shares nothing with the che
   The finding is true if the child never enters the parent. Other parts that it enters are pushed along, and are named. If the finding states a play of less than
   {FREE_MM:g} mm, it is true if the child enters the parent after that play, to one step. If it says that others hold the child, it is true if these, pushed along,
   end at the parent after that travel, to one step for each.
-- **a joint leaves a rotation free**: the child is turned by {FREE_RAD:g} rad about that axis at up to {PIVOTS[1]} places, the same way.
+- **a joint leaves a rotation free**: the child is turned by {FREE_RAD:g} rad about that axis at up to {2 * PIVOTS[1]} places, the same way.
 - **a part is not carried**: it is moved down by {FREE_MM:g} mm; all others stay.
 - **the product tips over**: the centre of mass, from centres integrated over the triangles of the meshes, is outside the triangles that span its lowest points.
 
