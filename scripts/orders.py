@@ -117,10 +117,7 @@ def judged(product: Product) -> dict[str, Any]:
 
 
 def _blocked(blocked: Blocked) -> dict[str, Any]:
-    best: dict[str, Any] = {}
-    for row in blocked.stops:
-        best.setdefault(row.part, [round(row.travel_mm, 2), row.by])
-    return {"parts": list(blocked.parts), "best": best}
+    return {"parts": list(blocked.parts), "best": {row.part: [round(row.travel_mm, 2), row.by] for row in blocked.stops}}
 
 
 def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
@@ -151,12 +148,17 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
 
 
 LOOKED: Final[Mapping[str, str]] = {
+    "run:drill": "The pinion is one piece with its shaft and wider than the closed bores of the head on both sides of it. The belt is a closed loop between two flanges; "
+    "a person stretches it over them, which the plan does not state.",
     "run:mirrored": "The rail is longer than the space between the sides of the carcass, which is one piece, and its ends are in blind sockets; the doors' pins, above and below, "
     "are in blind holes of top and shelf, as the plan says.",
     "run:phone_holder": "The holder's ball is in a closed socket of the arm that reaches over more than half of it; a workshop snaps it in, or makes the socket of two halves.",
     "run:pliers": "The lever is one piece of two cheeks and the pins between them, which pass through closed eyes of the lower jaw and of the strut.",
     "run:stool": "Each leg frame is one piece with the rods between its legs, and the rods lie in closed eyes of the seat's lugs and of the braces; the rod of the outer frame "
     "passes through closed bores of the inner legs.",
+    "run:tempo": "The escape wheel is one piece with its arbor, between the two plates of the frame, which are one piece and closed about it; the pendulum likewise. "
+    "The selector is one piece with a knob outside and a head inside the case, both wider than its bore.",
+    "run:toaster": "The housing is one closed box with the two rods in it on which the lifter slides, in closed bushes.",
     "run:toy": "Each shaft is one piece with a wheel inside the body that is wider than the closed bores, and the crankshafts with webs outside; the body is one piece.",
     "metronome": "The case is one hollow piece around its nut and its barrel.",
     "scissor_lift": "Each frame is one piece of two arms and their cross rods, and the rods lie in closed eyes of the other frames, inside its own two arms.",
@@ -171,6 +173,8 @@ LOOKED: Final[Mapping[str, str]] = {
     "task:sarrus_lifter": "Each leaf is between two lugs whose pins reach into its eye from both sides; lugs, pins and plate are one piece, below as above.",
     "task:scotch_yoke_pump": "The crank pin is one piece with the disc below the block and with a head above it that is wider than the block's bore; the yoke's rods end "
     "in posts on both sides, which are one piece with the base.",
+    "task:sewing_head": "The needle bar leaves the top of its rod only above the highest place to which the crank brings it. The needle rod is between crank and needle bar, "
+    "whose pins are in its eyes from both sides.",
     "task:shaper_quick_return": "The rod of the ram passes through a closed bore and ends in posts on both sides, which are one piece with the base; the link is on the pins of lever "
     "and ram from both sides.",
     "task:vice_dividing": "The spindle is one piece with a screw between the blocks of the bed that is wider than their closed bores, and with a bar outside; the blocks are one piece with the "

@@ -47,6 +47,7 @@ _FLAT: Final = 1e-6  # of a unit vector's height
 _LEAST_MM: Final = 0.3  # of the travel in a first direction: less is play
 _ASIDE: Final = 2  # atoms that move aside for others
 _MOST_ASIDE: Final = 6  # moves aside that are tried of each state, the farthest
+_LIKELY: Final = 2  # parts that bound how far another one moves, before all others are asked
 _MOST_COMPARED: Final = 50_000_000  # triangles of pairs of parts, in a minute or so; from there on only straight ways at rest are tried
 
 Atom = tuple[str, ...]  # parts that stay together for now
@@ -574,15 +575,22 @@ class _Taking:
     def _report(self, left: Sequence[Atom], ways: Ways) -> None:
         """Record parts that hold each other, with what stops each."""
         names = tuple(name for atom in left for name in atom)
-        rows: list[StopRow] = []
-        for name in names:
-            own: list[StopRow] = []
-            for way in distinct([*np.eye(3), *ways_of(self.scene, ways.poses, name)]):
-                stop = ways.stop([name], [other for other in names if other != name], way)
-                if stop.by is not None:
-                    own.append(StopRow(part=name, direction=_vector(way), travel_mm=round(stop.travel, _ROUNDED), by=stop.by))
-            rows += sorted(own, key=lambda row: -row.travel_mm)
-        self.blocked.append(Blocked(parts=names, stops=tuple(rows), remedy=self._remedy(names), ended=self._is_late()))
+        rows = (self._farthest(name, [other for other in names if other != name], ways) for name in names)
+        stops = tuple(row for row in rows if row is not None)
+        self.blocked.append(Blocked(parts=names, stops=stops, remedy=self._remedy(names), ended=self._is_late()))
+
+    def _farthest(self, name: str, others: Sequence[str], ways: Ways) -> StopRow | None:
+        """Return in which of its directions a part moves farthest before another one stops it; None if nothing stops it in any."""
+        directions, best = distinct([*np.eye(3), *self._joint_axes([name], ways)]), None
+        likely = sorted(others, key=lambda other: -ways.often(name, other))[:_LIKELY]
+        bounds = np.array([ways.stop([name], likely, way).travel for way in directions])
+        for at in np.argsort(-bounds, kind="stable").tolist():
+            if best is not None and bounds[at] <= best.travel_mm:
+                break
+            stop = ways.stop([name], others, directions[at])
+            if stop.by is not None and (best is None or stop.travel > best.travel_mm):
+                best = StopRow(part=name, direction=_vector(directions[at]), travel_mm=round(stop.travel, _ROUNDED), by=stop.by)
+        return best
 
     def _remedy(self, names: Sequence[str]) -> str:
         joints = [joint for joint in self.joints if {joint.parent, joint.child} <= set(names)]

@@ -182,7 +182,7 @@ class Blocked(_Form):
 
     Attributes:
         parts: The parts that hold each other.
-        stops: For each of them the directions that were tried, those of longest travel first.
+        stops: For each of them the direction in which it moves farthest, and what stops it there.
         remedy: What can be done.
         ended: Whether the search ended at its limit of work; then not all other poses, pairs of moves and moves aside were tried.
     """
@@ -236,10 +236,7 @@ class AssemblyOrder(_Form):
 
 
 def _finding(blocked: Blocked) -> Finding:
-    best: dict[str, StopRow] = {}
-    for row in blocked.stops:
-        best.setdefault(row.part, row)
-    ways = "; ".join(f"{row.part} moves {row.travel_mm:.3g} mm at most before {row.by} stops it" for row in best.values())
+    ways = "; ".join(f"{row.part} moves {row.travel_mm:.3g} mm at most before {row.by} stops it" for row in blocked.stops)
     return Finding(
         code="W_NOT_INSERTABLE",
         where=f"parts.{blocked.parts[0]}",

@@ -90,9 +90,9 @@ def test_a_thing_in_a_closed_box_is_blocked_by_the_box_and_named() -> None:
     assert not order.ok
     (blocked,) = order.blocked
     assert blocked.parts == ("box", "thing")
-    up = next(row for row in blocked.stops if row.part == "thing" and row.direction == (0, 0, 1))
-    assert up.by == "box"
-    assert up.travel_mm == pytest.approx(10.0, abs=0.1)  # from 20 to 30, and the depth that may overlap
+    (far,) = (row for row in blocked.stops if row.part == "thing")
+    assert far.by == "box"
+    assert far.travel_mm == pytest.approx(16.0, abs=0.1)  # sideways, from 20 to 36, and the depth that may overlap
     assert order.findings[0].code == "W_NOT_INSERTABLE"
     assert AssemblyOrder.from_json(order.to_json()) == order
 
