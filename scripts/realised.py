@@ -50,10 +50,7 @@ FREE_RAD: Final = 0.15
 STEP_MM: Final = 0.25
 STEP_RAD: Final = 0.025
 DEEP_MM: Final = 0.02  # besides the deflections of the two meshes: what overlaps by less touches
-PIVOTS: Final = (
-    5,
-    41,
-)  # places on each of two axes of a joint about which a tilt is tried; the second if it is stopped at all of the first
+PIVOTS: Final = (5, 41)  # places on each of two axes about which a tilt is tried; the second if it is stopped at all of the first
 
 Placed = Mapping[str, SE3]
 
