@@ -585,10 +585,11 @@ class _Taking:
         likely = sorted(others, key=lambda other: -ways.often(name, other))[:_LIKELY]
         bounds = np.array([ways.stop([name], likely, way).travel for way in directions])
         for at in np.argsort(-bounds, kind="stable").tolist():
-            if best is not None and bounds[at] <= best.travel_mm:
+            known = -np.inf if best is None else best.travel_mm
+            if bounds[at] <= known:
                 break
-            stop = ways.stop([name], others, directions[at])
-            if stop.by is not None and (best is None or stop.travel > best.travel_mm):
+            stop = ways.stop([name], others, directions[at], least=known)
+            if stop.by is not None and stop.travel > known:
                 best = StopRow(part=name, direction=_vector(directions[at]), travel_mm=round(stop.travel, _ROUNDED), by=stop.by)
         return best
 
