@@ -133,6 +133,9 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
         for move in reversed(step.moves):  # out again
             for share in np.linspace(0, 1, PLACES):
                 offset = beyond - share * move.length_mm * np.array(move.direction)
+                moved = SE3.from_translation(offset)
+                if move.axis_point is not None:
+                    moved = moved @ SE3.from_axis_angle(-np.array(move.direction), share * move.turns * 2 * np.pi, about=move.axis_point)
                 places += 1
                 for part in step.parts:
                     for other in step.onto:
@@ -140,7 +143,7 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
                         if not near or frozenset((part, other)) in permitted:
                             continue
                         pairs += 1
-                        T = poses[other].inverse() @ SE3.from_translation(offset) @ poses[part]
+                        T = poses[other].inverse() @ moved @ poses[part]
                         found = overlap(body_of(scene.meshes[other]), body_of(scene.meshes[part]), T)
                         worst = max(worst, found.depth - ways.depth(part, other))
             beyond = beyond - move.length_mm * np.array(move.direction)

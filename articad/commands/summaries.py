@@ -171,7 +171,10 @@ def print_order(report: Report, terminal: Terminal) -> None:
         if not step["moves"]:
             terminal.say(f"{step['number']:3}. {step['assembly']}: start with {what}")
             continue
-        path = ", then ".join(f"{_way(move['direction'])} by {move['length_mm']:.4g} mm" for move in step["moves"])
+        path = ", then ".join(
+            f"{_way(move['direction'])} by {move['length_mm']:.4g} mm{f', {move["turns"]:g} turns' if move['turns'] else ''}"
+            for move in step["moves"]
+        )
         forced = "".join(f", {a} and {b} by {how}" for a, b, how in step["permitted"])
         forced += turned_over(step["at"]) if step["opened"] else ""
         if step["slides"]:

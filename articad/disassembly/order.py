@@ -21,6 +21,7 @@ from articad.connectors.se3 import SE3
 from articad.disassembly.blocking import Blocking
 from articad.disassembly.opened import Proof, folded
 from articad.disassembly.poses import OtherPose
+from articad.disassembly.screwing import ScrewOut, screw_out
 from articad.disassembly.steps import AssemblyOrder, AssemblyStep, Blocked, Move, StopRow, Vector3
 from articad.disassembly.ways import CLEAR_MM, Ways, distinct, ways_of
 from articad.geometry.faces import faces_of
@@ -114,6 +115,7 @@ class _Removal:
     key: tuple[float, ...] = field(compare=False)
     opened: bool = False
     aside: tuple[_Aside, ...] = ()
+    screw: ScrewOut | None = field(default=None, compare=False)
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -267,8 +269,9 @@ class _Taking:
             )
         ]
         if first.any():
-            length = round(float(np.linalg.norm(first)), _ROUNDED)
-            moves.append(Move(direction=_vector(-_unit(first)), length_mm=length, apart_mm=length))
+            moves.append(_first_move(first, removal.screw))
+        if removal.screw is not None:
+            forced += ((*removal.screw.pair, "screw"),)
         return AssemblyStep(
             number=0,
             assembly=name,
@@ -322,6 +325,7 @@ class _Taking:
             return self._removable(left, base, ways) or self._in_two_moves(left, base, ways) or self._after_others(left, base, ways)
         return (
             self._removable(left, base)
+            or self._unscrewed(left, base)
             or self._elsewhere(left, base)
             or self._in_two_moves(left, base, ways)
             or self._folded(left, base)
@@ -419,12 +423,28 @@ class _Taking:
                 return replace(found, opened=True)
         return None
 
+    def _unscrewed(self, left: Sequence[Atom], base: str) -> _Removal | None:
+        """Return an atom that is turned out of a thread, and then leaves along its axis."""
+        for joint in (each for each in self.joints if each.type is JointType.SCREW):
+            for atom in left:
+                rest = [name for other in left if other != atom for name in other]
+                if base in atom or (joint.parent in atom) == (joint.child in atom) or not {joint.parent, joint.child} <= {*atom, *rest}:
+                    continue
+                for sense in (1.0, -1.0):
+                    out = None if self._is_late() else screw_out(self.ways, joint, atom, rest, sense)
+                    if out is not None and self.ways.free(atom, rest, _unit(out.offset), offset=out.offset):
+                        key = self._key((atom,), left, out.offset, 0)
+                        return _Removal((atom,), _unit(out.offset), self.ways, {}, out.offset, key, screw=out)
+        return None
+
     def _nearer(self, found: _Removal, staying: Sequence[str]) -> _Removal:
         """Return the removal in a direction in which it is clear of its partners much sooner, if its way is long for its size.
 
         A handle comes from the front of its door, not from above, all along the door.
         """
         moving, ways = found.parts, found.ways
+        if found.screw is not None:
+            return found
         if any(frozenset((a, b)) in self.forced for a in moving for b in staying):
             return self._gentlest(found, staying)
         joined = {end for joint in self.joints for end in (joint.parent, joint.child) if {joint.parent, joint.child} & set(moving)}
@@ -602,6 +622,16 @@ class _Taking:
                 f"pressed into place, set joints.{round_one.name}.fastening to 'snap' or 'press', or try assembly_order(fastenings={{{round_one.name!r}: 'snap'}})."
             )
         return f"Open one side of {names[0]}, make one of the parts as two, or set the fastening of the joint that snaps, is pressed or is bought as one piece."
+
+
+def _first_move(first: FloatArray, screw: ScrewOut | None) -> Move:
+    """Return the move to its place of a part that leaves it by an offset `(3,)` [mm] first, perhaps along a thread."""
+    length, direction = round(float(np.linalg.norm(first)), _ROUNDED), _vector(-_unit(first))
+    if screw is None:
+        return Move(direction=direction, length_mm=length, apart_mm=length)
+    return Move(
+        kind="screw", direction=direction, length_mm=length, apart_mm=length, turns=float(screw.turns), axis_point=_offset(screw.point)
+    )
 
 
 def _new(axes: Iterable[FloatArray], known: Sequence[FloatArray]) -> FloatArray:

@@ -45,7 +45,7 @@ class Move(_Form):
     """One piece of a path, in the order of assembly.
 
     Attributes:
-        kind: "straight", or "screw": along the direction while turning about it.
+        kind: "straight", or "screw": along the direction while turning about it, sampled at 16 places of each turn.
         direction: Unit vector in the ground frame, towards the place of the part.
         length_mm: From where the part is clear of everything.
         apart_mm: From where it is clear of the parts that it is joined to: enough for an exploded picture.
@@ -77,7 +77,8 @@ class AssemblyStep(_Form):
         opened: Whether `at` is the value of a joint of what is there so far, which moves farther than in the whole product because a loop is still open.
         joints: Joints between the parts and those in place that this step makes.
         fastened: How those of them are held together whose fastening is stated.
-        strength: "proven": free of collision all along the path; "permitted": so but for pairs that are fastened by force, such as a snap, or bought as one.
+        strength: "proven": free of collision all along the path; "permitted": so but for pairs that are fastened by force, such as a snap, bought as one, or
+            turned into each other's thread, which is sampled.
         permitted: These pairs, with their fastening.
         forced_mm: Length of the end of the path on which such a pair overlaps; 0 where it is not known.
     """
@@ -155,6 +156,8 @@ def _way(move: Move) -> str:
     strongest = sorted((axis for axis in range(3) if abs(back[axis]) > _AXIS), key=lambda axis: -abs(back[axis]))
     main, others = strongest[0], strongest[1:]
     way = _FROM[main, bool(back[main] > 0)]
+    if move.kind == "screw":
+        return f"turned in {way} by {abs(move.turns):g} turns{' of a left-hand thread' if move.turns < 0 else ''}"
     if not others:
         return way
     angle = math.degrees(math.atan2(float(np.linalg.norm(back[others])), abs(float(back[main]))))

@@ -111,7 +111,7 @@ class _Manual:
         facts.append(f"The paths of {proven} steps are proven free of collisions all along; {starts} steps lay down a first part.")
         if permitted:
             listed = ", ".join(str(step.number) for step in permitted)
-            facts.append(f"Not proven, because parts are joined by force or bought as one: step {listed}.")
+            facts.append(f"Not proven, because parts are joined by force or by a thread, or bought as one: step {listed}.")
         facts += [
             f"No order was found that puts these together: {', '.join(blocked.parts)}. They are shown in place.{ENDED if blocked.ended else ''}"
             for blocked in self.order.blocked
@@ -200,7 +200,7 @@ class _Manual:
         if step.permitted:
             pairs = "; ".join(f"{a} and {b}: {_FASTENED[how]}" for a, b, how in step.permitted)
             where = f" over the last {step.forced_mm:.4g} mm" if step.forced_mm else ""
-            lines.append(f"Not proven{where}, joined by force or bought as one: {pairs}.")
+            lines.append(f"Not proven{where}, joined by force or by a thread, or bought as one: {pairs}.")
         elif step.moves:
             far = ", then ".join(f"{move.length_mm:.4g} mm" for move in step.moves)
             lines.append(f"Path of {far}: proven free of collisions.")
