@@ -171,10 +171,7 @@ def print_order(report: Report, terminal: Terminal) -> None:
         if not step["moves"]:
             terminal.say(f"{step['number']:3}. {step['assembly']}: start with {what}")
             continue
-        path = ", then ".join(
-            f"{_way(move['direction'])} by {move['length_mm']:.4g} mm{f', {move["turns"]:g} turns' if move['turns'] else ''}"
-            for move in step["moves"]
-        )
+        path = ", then ".join(f"{_way(move['direction'])} by {move['length_mm']:.4g} mm{_turned(move['turns'])}" for move in step["moves"])
         forced = "".join(f", {a} and {b} by {how}" for a, b, how in step["permitted"])
         forced += turned_over(step["at"]) if step["opened"] else ""
         if step["slides"]:
@@ -187,6 +184,11 @@ def print_order(report: Report, terminal: Terminal) -> None:
     if report["left_out"]:
         terminal.say(f"Not considered, without a valid solid: {', '.join(report['left_out'])}.")
     terminal.say(f"{len(report['steps'])} steps. Not checked: {report['not_checked'][0].lower()}{report['not_checked'][1:]}")
+
+
+def _turned(turns: float) -> str:
+    """Return how often a part turns in its thread, such as `, 4 turns`; empty if it does not."""
+    return f", {turns:g} turns" if turns else ""
 
 
 def _free(way: Report) -> str:
