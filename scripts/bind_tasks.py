@@ -3,19 +3,20 @@
     python scripts/bind_tasks.py press_toggle delta_robot
     python scripts/bind_tasks.py          # all
 
-A task whose checks are bound already gets them anew. Where they do not hold of the edited product, the edit restates those of that kind.
+A task whose checks are bound already gets them anew. Where they do not hold of an edited product, the edit restates those of that kind.
 No task is written whose references do not pass all these checks.
 """
 
 import json
 import sys
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 from articad.kernels.kernel import BuildCache
 from articad_bench.bindings import BOUND, NotBoundError, bound_task
 from articad_bench.checks import AnyCheck
-from articad_bench.reference import edited_reference, reference
+from articad_bench.reference import given, references
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, checks_as_stored, tasks_in
 
@@ -30,19 +31,17 @@ def put(stored: dict[str, Any], checks: Sequence[AnyCheck]) -> None:
 
 if __name__ == "__main__":
     for folder, task in tasks_in(TASKS, names=sys.argv[1:]):
-        built = reference(folder, task, cache=BuildCache())
-        after = None
-        if task.edit is not None:
-            after = Subject(edited_reference(folder, task, built, cache=BuildCache()), before=built)
+        stages = [given(folder, task, cache=BuildCache()), *references(folder, task, cache=BuildCache())]
+        first, *after = [Subject(product, before=before) for before, product in pairwise(stages) if product is not None]
         try:
-            found = bound_task(task, Subject(built), after)
+            found = bound_task(task, first, after)
         except NotBoundError as error:
             print(f"{task.name}: not written: {error}", flush=True)
             continue
         file = folder / "task.json"
         stored = json.loads(file.read_text(encoding="utf-8"))
         put(stored, found.checks)
-        if found.edit is not None:
-            put(stored["edit"], found.edit.checks)
+        for row, edit in zip(stored.get("edits", ()), found.edits, strict=True):
+            put(row, edit.checks)
         file.write_text(json.dumps(stored, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
         print(f"{task.name}: {len(found.checks)} checks", flush=True)

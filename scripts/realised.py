@@ -73,8 +73,9 @@ def digest(folder: Path) -> str:
 
 
 def references() -> dict[str, Path]:
-    """Return the folder of the reference of each task that has one."""
-    return {task.name: reference_folder(folder, task) for folder, task in tasks_in() if task.reference is not None}
+    """Return the folder of the reference of each task that has one; those that separate may take files of their references from other folders."""
+    chosen = [(folder, task) for folder, task in tasks_in() if task.reference is not None and task.kind != "separating"]
+    return {task.name: reference_folder(folder, task) for folder, task in chosen}
 
 
 # ------------------------------------------------------------------ the meshes

@@ -104,28 +104,30 @@ class NotBoundError(ArticadError):
     """A reference does not pass the checks that are derived from it."""
 
 
-def bound_task(task: Task, subject: Subject, after: Subject | None) -> Task:
-    """Return a task with its bindings in place of those that it has; its edit restates those that do not hold of the edited product, or of its mirror image as well.
+def bound_task(task: Task, subject: Subject, after: Sequence[Subject] = ()) -> Task:
+    """Return a task with its bindings in place of those that it has; an edit restates those that do not hold of the edited product, or of its mirror image as well.
 
     Args:
         task: The task.
         subject: Its reference.
-        after: Its edited reference, if it has an edit.
+        after: Its reference after each edit.
 
     Raises:
         NotBoundError: If a reference does not pass; says which checks.
     """
     found = bound(task, subject)
-    _all_hold([check for check in found.checks if isinstance(check, BOUND)], subject)
-    if task.edit is None or after is None:
-        return found
-    others = tuple(check for check in task.edit.checks if not isinstance(check, BOUND))
-    kinds = {check.kind for check in found.checks if isinstance(check, BOUND) and not check.judge(after).ok}
-    kinds |= {check.kind for check in found.checks if isinstance(check, Handed) and not check.refuses_mirror_image(after)}
-    edited = task.model_copy(update={"checks": task.edit_checks})
-    again = tuple(check for check in bindings(edited, after) if check.kind in kinds)
-    _all_hold(again, after)
-    return found.model_copy(update={"edit": task.edit.model_copy(update={"checks": (*others, *again)})})
+    held = [check for check in found.checks if isinstance(check, BOUND)]
+    _all_hold(held, subject)
+    edits = []
+    for edit, checks, product in zip(task.edits, task.stages[1:], after, strict=True):
+        kinds = {check.kind for check in held if not check.judge(product).ok}
+        kinds |= {check.kind for check in held if isinstance(check, Handed) and not check.refuses_mirror_image(product)}
+        again = [check for check in bindings(task.model_copy(update={"checks": checks}), product) if check.kind in kinds]
+        _all_hold(again, product)
+        held = [*(check for check in held if check.kind not in {each.kind for each in again}), *again]
+        others = (check for check in edit.checks if not isinstance(check, BOUND))
+        edits.append(edit.model_copy(update={"checks": (*others, *again)}))
+    return found.model_copy(update={"edits": tuple(edits)})
 
 
 def _all_hold(checks: Sequence[AnyCheck], subject: Subject) -> None:

@@ -11,8 +11,6 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.batches.pool import Call
@@ -22,8 +20,8 @@ from articad.processes import scratch
 from articad_bench.bindings import DETAIL
 from articad_bench.cheats import CHEATS, cheats_of
 from articad_bench.likeness_checks import handedness
-from articad_bench.reference import reference, reference_folder
-from articad_bench.shape_checks import placed
+from articad_bench.reference import given, given_folder, reference, reference_folder
+from articad_bench.shape_checks import placed, same_parts
 from articad_bench.solids import occupied
 from articad_bench.subject import Subject
 from articad_bench.task import Task, read_json, read_task
@@ -190,7 +188,8 @@ def _tried(
     kernel: PartKernel | None,
     tell: Callable[[str, str], object],
 ) -> list[CheatRow]:
-    built = reference(folder, task, cache=cache, kernel=kernel)
+    built, before = (make(folder, task, cache=cache, kernel=kernel) for make in (reference, given))
+    assert built is not None
     rows = []
     for kind in (*CHEATS, "other"):
         try:
@@ -202,7 +201,7 @@ def _tried(
         if cheat is None:
             continue
         same = the_same(kind, built, cheat.assembly)
-        failed = ("", "") if same else refused_by(task, Subject(cheat.assembly))
+        failed = ("", "") if same else refused_by(task, Subject(cheat.assembly, before=before))
         row = CheatRow(
             task.name, kind, None if failed is None or same else failed[0], "" if failed is None else failed[1][:200], same, digest
         )
@@ -225,20 +224,7 @@ def the_same(kind: str, reference: Assembly, cheat: Assembly) -> bool:
     """Return whether a cheat is the product itself: the mirror image of a symmetric one, or one whose exchanged bodies are alike."""
     if kind == "mirrored":
         return _same_mirrored(reference, cheat)
-    return kind == "swapped" and _same_parts(reference, cheat)
-
-
-def _same_parts(reference: Assembly, swapped: Assembly) -> bool:
-    """Return whether bodies of the same volume fill the same boxes."""
-    first, second = (
-        sorted([*mesh.bounds.ravel().round(2).tolist(), round(abs(mesh.volume), 1)] for mesh in placed(Subject(each)))
-        for each in (reference, swapped)
-    )
-    size = float(Subject(reference).size.max())
-    return all(
-        float(np.abs(np.subtract(a[:6], b[:6])).max()) <= SAME * size and abs(a[6] - b[6]) <= SAME * a[6]
-        for a, b in zip(first, second, strict=True)
-    )
+    return kind == "swapped" and same_parts(Subject(reference), Subject(cheat), SAME)
 
 
 def _same_mirrored(reference: Assembly, mirrored: Assembly) -> bool:
@@ -267,9 +253,11 @@ def _other(every: Sequence[tuple[Path, Task]], task: Task) -> tuple[Path, Task] 
 def _digest(folder: Path, task: Task) -> str:
     found = hashlib.sha256(task.model_dump_json(exclude={"unheld"}).encode())  # which says nothing of what must hold
     if task.reference is not None:
-        place = reference_folder(folder, task)
-        for file in sorted(path for path in place.rglob("*") if path.suffix in {".json", ".py"}):
-            found.update(file.relative_to(place).as_posix().encode() + file.read_bytes())
+        for place in (reference_folder(folder, task), given_folder(folder, task)):
+            if place is None:
+                continue
+            for file in sorted(path for path in place.rglob("*") if path.suffix in {".json", ".py"}):
+                found.update(file.relative_to(place).as_posix().encode() + file.read_bytes())
     for name in _SOURCES:
         found.update(Path(__file__).with_name(name).read_bytes())
     return found.hexdigest()[:16]

@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     argument(
         "--seed", metavar="N", type=positive, default=1, help="make: which variant of each task; the same seed gives the same variants (1)"
     ),
-    argument("--kind", choices=["articulated", "static", "industrial", "hard"], default=None, help="only tasks of this kind"),
+    argument("--kind", choices=["articulated", "static", "industrial", "hard", "separating"], default=None, help="only tasks of this kind"),
     output_folder(
         "--out", "bench", "where rows, runs, variants and the tables of faults and cheats are kept; existing rows are not made again"
     ),
@@ -222,8 +222,10 @@ def _list(options: argparse.Namespace, terminal: Terminal) -> Report:
         from articad_bench.sentences import sentences
 
         return print_sentences({task.name: sentences(task) for task in tasks}, terminal)
-    rows = [(task.name, task.kind, task.modality, task.product, len(task.checks)) for task in tasks]
-    terminal.table(["task", "kind", "asked by", "product", "checks"], rows)
+    rows = [
+        (task.name, task.kind, task.modality, task.product, len(task.checks), len(task.edits), str(task.budget or "")) for task in tasks
+    ]
+    terminal.table(["task", "kind", "asked by", "product", "checks", "edits", "budget"], rows)
     terminal.say(f"{len(tasks)} tasks.")
     return {"schema": "articad.bench-tasks/1", "ok": True, "findings": [], "tasks": [task.model_dump(mode="json") for task in tasks]}
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from articad.agents.llm import LLM, Replay
 from articad.agents.settings import RunOptions
 from articad.errors import ReadError
-from articad_bench.scoring import EDITED, model_of
+from articad_bench.scoring import model_of, stage_name
 from articad_bench.task import Task
 
 
@@ -21,7 +21,7 @@ def as_recorded(options: RunOptions, llm: LLM) -> RunOptions:
 
 
 class RecordedAnswers:
-    """Answers as recorded: `<folder>/<task>` is a run, or holds `run_…` and `edit_…` as a benchmark's own folder does.
+    """Answers as recorded: `<folder>/<task>` is a run, or holds `run_…`, `edit_1_…` and so on, as a benchmark's own folder does.
 
     A prompt that differs from the recorded one is answered; a step that was not recorded is not.
     """
@@ -37,9 +37,9 @@ class RecordedAnswers:
         """
         return self._replay(task.name)
 
-    def of_edit(self, task: Task) -> LLM:
-        """Return who answers those of its edit."""
-        return self._replay(f"{task.name}{EDITED}")
+    def of_edit(self, task: Task, number: int) -> LLM:
+        """Return who answers those of one of its edits, counted from 1."""
+        return self._replay(stage_name(task, number))
 
     def _replay(self, name: str) -> Replay:
         found = model_of(name, self._folder)

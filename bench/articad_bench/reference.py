@@ -1,8 +1,11 @@
-"""Reference solutions of tasks: our own plans, which prove that a task can be done, and what its pictures are drawn from."""
+"""Reference solutions of tasks: our own plans, which prove that a task can be done, and what its pictures are drawn from.
+
+A stage of a task has a folder with what its reference has of its own. What that lacks is in the folder of the stage before.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -13,7 +16,7 @@ from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import SCRIPT_SUFFIX, read_script
 from articad.plan.resolve import resolve
-from articad.plan.schema import AssemblyPlan
+from articad.plan.schema import PLAN_FILE, AssemblyPlan
 from articad_bench.task import Task
 
 _EXAMPLE: Final = "example:"
@@ -27,58 +30,103 @@ def reference_folder(folder: Path, task: Task) -> Path:
     """
     if task.reference is None:
         raise ReadError.at(folder, f"{task.name} has no reference solution.", "Give it one: reference/plan.json and reference/parts/.")
-    if task.reference.startswith(_EXAMPLE):
-        return examples.folder(task.reference.removeprefix(_EXAMPLE))
-    return _own(folder / task.reference)
+    return _own(folder, task.reference)
 
 
-def _own(place: Path) -> Path:
-    """Return a folder of a task, which is no link.
+def given_folder(folder: Path, task: Task) -> Path | None:
+    """Return the folder of the product that a task begins with; None if it begins with nothing.
+
+    Raises:
+        ReadError: If a link is in its place.
+    """
+    return None if task.given is None else _own(folder, task.given)
+
+
+def _own(folder: Path, name: str) -> Path:
+    """Return a folder of a task, which is no link, or that of an example.
 
     Raises:
         ReadError: If it is one.
     """
+    if name.startswith(_EXAMPLE):
+        return examples.folder(name.removeprefix(_EXAMPLE))
+    place = folder / name
     if place.is_symlink():
         raise ReadError.at(place, f"{place} is a link.", "Copy the folder there.")
     return place
 
 
+def reference_plan(folder: Path, task: Task) -> AssemblyPlan:
+    """Return the plan of a task's reference solution.
+
+    Raises:
+        ArticadError: If it has none.
+    """
+    return _plan(_folders(folder, task))
+
+
 def reference(folder: Path, task: Task, *, cache: BuildCache | None = None, kernel: PartKernel | None = None) -> Assembly:
-    """Build a task's reference solution.
+    """Build a task's reference solution, as it is at first.
 
     Raises:
         ArticadError: If it has none, or it does not build.
     """
-    place = reference_folder(folder, task)
-    plan = AssemblyPlan.load(place)
-    return Assembly.from_plan(plan, place / "parts", cache=cache, kernel=kernel or kernel_named(plan.kernel))
+    return _built(_folders(folder, task), {}, cache, kernel)
 
 
-def edited_reference(
-    folder: Path, task: Task, before: Assembly, *, cache: BuildCache | None = None, kernel: PartKernel | None = None
-) -> Assembly:
-    """Build the reference solution after the task's edit.
+def given(folder: Path, task: Task, *, cache: BuildCache | None = None, kernel: PartKernel | None = None) -> Assembly | None:
+    """Build the product that a task begins with; None if it begins with nothing.
+
+    Raises:
+        ArticadError: If it does not build.
+    """
+    place = given_folder(folder, task)
+    return None if place is None else _built([place], {}, cache, kernel)
+
+
+def references(folder: Path, task: Task, *, cache: BuildCache | None = None, kernel: PartKernel | None = None) -> Iterator[Assembly]:
+    """Build a task's reference solution at each stage: as it is at first, and after each edit.
 
     Args:
         folder: Of the task.
-        task: One with an edit.
-        before: Its reference as it is.
+        task: The task.
         cache: Keeps built parts.
-        kernel: Builds the scripts of a second plan; what it names by default.
+        kernel: Builds the scripts; what the plans name by default.
 
     Raises:
-        ArticadError: If the task says neither `values` nor a second plan, or it does not build.
+        ArticadError: If an edit says neither `values` nor another folder, or a stage does not build.
     """
-    edit = task.edit
-    if edit is None or not (edit.values or edit.reference):
-        raise ReadError.at(folder, f"{task.name} has no edit that its reference makes.", "Give edit.values or edit.reference.")
-    if edit.reference is None:
-        return before.with_parameters(**edit.values)
-    place = _own(folder / edit.reference)
-    plan = AssemblyPlan.load(place)
+    folders = _folders(folder, task)
+    built = _built(folders, {}, cache, kernel)
+    yield built
+    for number, edit in enumerate(task.edits, start=1):
+        if not (edit.values or edit.reference):
+            raise ReadError.at(folder, f"The reference of {task.name} does not make edit {number}.", "Give its values or its reference.")
+        if edit.reference is None:
+            built = built.with_parameters(**edit.values)
+        else:
+            folders = [_own(folder, edit.reference), *folders]
+            built = _built(folders, edit.values, cache, kernel)
+        yield built
+
+
+def _folders(folder: Path, task: Task) -> list[Path]:
+    """Return the folders of the first stage: the reference's own, and that of the given product."""
+    begun = given_folder(folder, task)
+    return [reference_folder(folder, task)] if begun is None else [reference_folder(folder, task), begun]
+
+
+def _plan(folders: Sequence[Path]) -> AssemblyPlan:
+    """Return the plan of the first folder that has one."""
+    return AssemblyPlan.load(next((folder for folder in folders if (folder / PLAN_FILE).exists()), folders[0]))
+
+
+def _built(folders: Sequence[Path], values: Mapping[str, float], cache: BuildCache | None, kernel: PartKernel | None) -> Assembly:
+    plan = _plan(folders)
     kernel = kernel or kernel_named(plan.kernel)
-    scripts = _scripts((place / "parts", reference_folder(folder, task) / "parts"), plan, kernel)
-    return Assembly.from_plan(plan, scripts, cache=cache, kernel=kernel, parameters=edit.values)
+    parts = [folder / "parts" for folder in folders]
+    scripts = parts[0] if len(parts) == 1 else _scripts(parts, plan, kernel)
+    return Assembly.from_plan(plan, scripts, cache=cache, kernel=kernel, parameters=values or None)
 
 
 def _scripts(folders: Sequence[Path], plan: AssemblyPlan, kernel: PartKernel) -> dict[str, bytes]:

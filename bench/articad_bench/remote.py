@@ -87,4 +87,4 @@ def rows_of(tasks: Iterable[tuple[Path, Task]], answers: Iterable[Json]) -> list
 
 
 def _lost(task: Task, answer: Json) -> Row:
-    return Row(task.name, task.kind, task.modality, task.edit is not None, error=str(answer.get("error", "no answer")))
+    return Row(task.name, task.kind, task.modality, len(task.edits), error=str(answer.get("error", "no answer")))

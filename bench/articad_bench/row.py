@@ -12,10 +12,9 @@ from articad.runs.run import write_atomically
 from articad_bench.checks import Judgement
 from articad_bench.task import Task, read_json
 
-SCHEMA: Final = "articad.bench-row/1"
+SCHEMA: Final = "articad.bench-row/2"
 ROW: Final = "row.json"
 _MADE: Final = frozenset({"parts", "solids"})
-_JUDGED: Final = ("judgements", "edited")
 
 
 @dataclass(frozen=True)
@@ -26,11 +25,11 @@ class Row:
         task: Its name.
         kind: Of the task.
         modality: What it was asked by.
-        edit: Whether the task includes an edit.
+        edits: How many edits the task has.
         judgements: Of every check; none if nothing was made.
-        edited: Of every check of the edited product; none if there is none.
+        edited: Of every check of the product after each edit that was made.
         error: Why nothing was made.
-        edit_error: Why nothing was edited.
+        edit_error: Why the edit after these was not made, nor those that follow it.
         iterations: Answers with a plan or a script that were needed, beyond one for each plan and part, plus one; an edit's likewise.
         calls: Answers of models.
         tokens: In and out.
@@ -42,9 +41,9 @@ class Row:
     task: str
     kind: str
     modality: str
-    edit: bool = False
+    edits: int = 0
     judgements: tuple[Judgement, ...] = ()
-    edited: tuple[Judgement, ...] = ()
+    edited: tuple[tuple[Judgement, ...], ...] = ()
     error: str | None = None
     edit_error: str | None = None
     iterations: int = 0
@@ -57,7 +56,7 @@ class Row:
     @classmethod
     def of(cls, task: Task, key: str = "") -> Row:
         """Return the row of a task before anything is made."""
-        return cls(task.name, task.kind, task.modality, task.edit is not None, key=key)
+        return cls(task.name, task.kind, task.modality, len(task.edits), key=key)
 
     @property
     def made(self) -> bool:
@@ -66,31 +65,43 @@ class Row:
 
     @property
     def edit_ok(self) -> bool | None:
-        """Whether every check holds of the edited product; None where no edit is asked for."""
-        return self.edit_error is None and bool(self.edited) and all(judgement.ok for judgement in self.edited) if self.edit else None
+        """Whether every check holds of the product after every edit; None where no edit is asked for."""
+        return len(self.edited) == self.edits and all(_all_hold(stage) for stage in self.edited) if self.edits else None
 
     @property
     def ok(self) -> bool:
-        """True when every check holds, and every check of the edit."""
-        stands = self.error is None and bool(self.judgements) and all(judgement.ok for judgement in self.judgements)
-        return stands and self.edit_ok is not False
+        """True when every check holds, and every check of every edit."""
+        return self.error is None and _all_hold(self.judgements) and self.edit_ok is not False
 
     @property
     def failed(self) -> tuple[str, ...]:
-        """Kinds of the checks that do not hold, those of the edit as "edit:KIND"."""
-        first = (judgement.kind for judgement in self.judgements if not judgement.ok)
-        return (*first, *(f"edit:{judgement.kind}" for judgement in self.edited if not judgement.ok))
+        """Kinds of the checks that do not hold, those of the first edit as "edit_1:KIND"."""
+        first = [judgement.kind for judgement in self.judgements if not judgement.ok]
+        later = [f"edit_{number}:{each.kind}" for number, stage in enumerate(self.edited, start=1) for each in stage if not each.ok]
+        return (*first, *later)
 
     def to_json(self) -> dict[str, Any]:
         """Return the row as it is kept."""
-        rows = {name: value for name, value in vars(self).items() if name not in _JUDGED}
-        return {"schema": SCHEMA, "ok": self.ok} | rows | {name: [each.to_json() for each in getattr(self, name)] for name in _JUDGED}
+        judged = {"judgements": _stored(self.judgements), "edited": [_stored(stage) for stage in self.edited]}
+        return {"schema": SCHEMA, "ok": self.ok} | vars(self) | judged
 
     @classmethod
     def from_json(cls, stored: dict[str, Any]) -> Row:
         """Read a row that was kept."""
-        judged: dict[str, Any] = {name: tuple(Judgement(**judgement) for judgement in stored[name]) for name in _JUDGED}
-        return cls(**{name: stored[name] for name in cls.__dataclass_fields__ if name not in _JUDGED}, **judged)
+        judged = {"judgements": _read(stored["judgements"]), "edited": tuple(_read(stage) for stage in stored["edited"])}
+        return cls(**{name: stored[name] for name in cls.__dataclass_fields__} | judged)
+
+
+def _all_hold(judgements: Sequence[Judgement]) -> bool:
+    return bool(judgements) and all(judgement.ok for judgement in judgements)
+
+
+def _stored(judgements: Sequence[Judgement]) -> list[dict[str, Any]]:
+    return [judgement.to_json() for judgement in judgements]
+
+
+def _read(stored: Sequence[dict[str, Any]]) -> tuple[Judgement, ...]:
+    return tuple(Judgement(**judgement) for judgement in stored)
 
 
 def kept_row(place: Path, key: str) -> Row | None:

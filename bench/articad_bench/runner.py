@@ -1,7 +1,7 @@
 """Runs of the benchmark: each task generated, judged and written down before the next one; a killed run resumes where it was.
 
-One folder a task: its run directory, `run_` and the key of the way it was run, that of its edit, `edit_` and the same, and `row.json`,
-its row of the table. A row that is there and was made of the same task in the same way is not made again, so the table of a finished
+One folder a task: its run directory, `run_` and the key of the way it was run, those of its edits, `edit_1_` and so on and the same, that
+of the product that it begins with, `given_` and the same, and `row.json`, its row of the table. A row that is there and was made of the same task in the same way is not made again, so the table of a finished
 benchmark costs nothing to print. A task that failed because the provider could not be reached leaves no row: it is made again.
 """
 
@@ -21,17 +21,24 @@ from articad.agents.pipeline import generate
 from articad.agents.retrieval import Memory
 from articad.agents.review import trajectory
 from articad.agents.settings import ROUNDS, RunOptions, Services, Variant
+from articad.aliases import Json
+from articad.assembly import Assembly
 from articad.errors import TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.runs.record import assembly_of
-from articad.runs.run import Run, digest
+from articad.runs.record import assembly_of, record_assembly, record_checks
+from articad.runs.run import Run, RunRequest, digest, open_or_create
+from articad_bench.allowance import Allowance
 from articad_bench.recorded import as_recorded
+from articad_bench.reference import given
 from articad_bench.row import Row, keep_row, kept_row
 from articad_bench.subject import Subject
 from articad_bench.task import Task, read_image
 
 Ask = Callable[[Task], LLM]
 """Who answers a task's requests."""
+
+AskEdit = Callable[[Task, int], LLM]
+"""Who answers those of one of its edits, counted from 1."""
 
 Finished = Callable[[Run], object]
 """Called with each finished run, for example to remember it."""
@@ -42,7 +49,7 @@ def run_tasks(
     out: str | Path,
     ask: Ask,
     *,
-    ask_edit: Ask | None = None,
+    ask_edit: AskEdit | None = None,
     variant: Variant = "full",
     kernel: PartKernel | None = None,
     cache: BuildCache | None = None,
@@ -61,7 +68,7 @@ def run_tasks(
         tasks: Folders and tasks.
         out: Where rows and runs are kept; rows that are there are not made again.
         ask: Who answers each task's requests.
-        ask_edit: Who answers those of its edit; the same by default.
+        ask_edit: Who answers those of its edits; whoever answers the task's first requests by default.
         variant: As for `generate`.
         kernel: Likewise.
         cache: Likewise.
@@ -85,7 +92,7 @@ def run_tasks(
         key = digest({"task": task.model_dump(mode="json"), **way, "repairs": repairs, "rounds": rounds})
         row = kept_row(place, key)
         if row is None:
-            made = _Made(task, folder, place, key, (ask, ask_edit or ask), finished)
+            made = _Made(task, folder, place, key, (ask, ask_edit), finished)
             options = RunOptions(variant=variant, look=look, inspection=bool(look), ideas="never", repairs=repairs, rounds=rounds)
             row = made.row(options, Services(kernel=kernel, cache=cache, memory=memory))
             if not made.unreached:
@@ -105,9 +112,14 @@ class _Made:
         unreached: Whether it failed because the provider could not be reached.
     """
 
-    def __init__(self, task: Task, folder: Path, place: Path, key: str, asks: tuple[Ask, Ask], finished: Finished | None) -> None:
-        self._task, self._folder, self._asks, self._finished = task, folder, asks, finished
-        self._run, self._edit = (place / f"{name}_{key[:8]}" for name in ("run", "edit"))
+    def __init__(
+        self, task: Task, folder: Path, place: Path, key: str, asks: tuple[Ask, AskEdit | None], finished: Finished | None
+    ) -> None:
+        self._task, self._folder, self._finished = task, folder, finished
+        self._ask, self._ask_edit = asks
+        self._begun = place / f"given_{key[:8]}"
+        self._run, *self._edits = (place / f"{name}_{key[:8]}" for name in ("run", *(f"edit_{n + 1}" for n in range(len(task.edits)))))
+        self._allowance = Allowance(task.budget, _records(self._run, *self._edits))
         self._key = key
         self.unreached = False
 
@@ -115,28 +127,38 @@ class _Made:
         """Return what comes of it."""
         task, row, started = self._task, Row.of(self._task, self._key), time.monotonic()
         try:
-            images = [read_image(self._folder, image) for image in task.images]
-            llm = self._asks[0](task)
-            options = as_recorded(options, llm)
-            run = generate(task.prompt, llm=llm, images=images, out=self._run, options=options, services=services)
-            assembly = assembly_of(run, cache=services.cache)
-            row = replace(row, judgements=task.judge(Subject(assembly)))
+            llm = self._ask(task)
+            run, before = self._first(llm, options, services)
+            subject = Subject(assembly_of(run, cache=services.cache), before=before)
+            row = replace(row, judgements=task.judge(subject))
             self._tell(run)
-            if task.edit is not None:
-                row = self._with_edit(row, run, Subject(assembly), options, services)
+            row = self._with_edits(row, run, llm, options, services)
         except Exception as error:  # noqa: BLE001 - a defect of ours costs one task, not the benchmark
             row = replace(row, error=self._told(error))
-        return replace(row, seconds=time.monotonic() - started, **_effort(self._run, self._edit))
+        return replace(row, seconds=time.monotonic() - started, **_effort(self._run, *self._edits))
 
-    def _with_edit(self, row: Row, run: Run, before: Subject, options: RunOptions, services: Services) -> Row:
-        assert self._task.edit is not None
+    def _first(self, llm: LLM, options: RunOptions, services: Services) -> tuple[Run, Assembly | None]:
+        """Return the run of the prompt: of an edit where a product is given. Return that product with it."""
+        task, options, allowed = self._task, as_recorded(options, llm), self._allowance.of(llm)
+        images = [read_image(self._folder, image) for image in task.images]
+        before = given(self._folder, task, cache=services.cache, kernel=services.kernel)
+        if before is None:
+            return generate(task.prompt, llm=allowed, images=images, out=self._run, options=options, services=services), None
+        begun = _as_run(before, self._begun)
+        return edit(begun, task.prompt, llm=allowed, images=images, out=self._run, options=options, services=services), before
+
+    def _with_edits(self, row: Row, run: Run, llm: LLM, options: RunOptions, services: Services) -> Row:
+        """Return the row with what comes of each edit; after one that is not made, none is asked for."""
         try:
-            llm = self._asks[1](self._task)
-            options = as_recorded(options, llm)
-            edited = edit(run, self._task.edit.prompt, llm=llm, out=self._edit, options=options, services=services)
-            subject = Subject(assembly_of(edited, cache=services.cache), before=before.assembly)
-            row = replace(row, edited=self._task.judge_edit(subject))
-            self._tell(edited)
+            before = assembly_of(run, cache=services.cache)
+            for stage, (change, out) in enumerate(zip(self._task.edits, self._edits, strict=True), start=1):
+                asked = llm if self._ask_edit is None else self._ask_edit(self._task, stage)
+                chosen = as_recorded(options, asked)
+                run = edit(run, change.prompt, llm=self._allowance.of(asked), out=out, options=chosen, services=services)
+                after = assembly_of(run, cache=services.cache)
+                row = replace(row, edited=(*row.edited, self._task.judge(Subject(after, before=before), stage)))
+                self._tell(run)
+                before = after
         except Exception as error:  # noqa: BLE001 - as above
             row = replace(row, edit_error=self._told(error))
         return row
@@ -150,10 +172,27 @@ class _Made:
         return f"{type(error).__name__}: {error}"
 
 
+def _as_run(assembly: Assembly, out: Path) -> Run:
+    """Return the finished run of a product that is given, as `articad build` makes it."""
+    assert assembly.plan is not None
+    options: Json = {"task": "build", "kernel": assembly.plan.kernel, "parameters": {}}
+    with open_or_create(RunRequest(prompt=assembly.plan.name, options=options), out) as run:
+        run.save_plan(assembly.plan.dumps(), 0)
+        record_assembly(run, assembly)
+        record_checks(run, assembly.check(motion=False))
+    return run
+
+
+def _records(*paths: Path) -> list[Json]:
+    """Return the requests of runs that were answered, with their answers."""
+    runs = [Run.view(path) for path in paths if (path / "request.json").is_file()]
+    return [reply for run in runs for step in run.replies() if (reply := run.reply(step)) is not None]
+
+
 def _effort(*paths: Path) -> dict[str, Any]:
     """Return what runs took, finished or not."""
     runs = [Run.view(path) for path in paths if (path / "request.json").is_file()]
-    replies = [reply["reply"] for run in runs for step in run.replies() if (reply := run.reply(step)) is not None]
+    replies = [record["reply"] for record in _records(*paths)]
     costs = [reply["cost"] for reply in replies]
     return {
         "iterations": sum(_iterations(run) for run in runs),

@@ -11,41 +11,82 @@ from typing import Final
 from articad import formats
 from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
+from articad.kernels.kernel import BuildCache
 from articad.runs.record import assembly_of
 from articad.runs.run import Run
 from articad_bench.check import Judgement
+from articad_bench.reference import given
 from articad_bench.row import Row
+from articad_bench.shape_checks import same_parts
 from articad_bench.subject import Subject
 from articad_bench.task import Task
 from articad_bench.unsaid import asked_for, format_of, unsaid
 
-EDITED: Final = "_edited"  # what is appended to a task's name where a tool's edited model is
+GIVEN: Final = "_given"  # what is appended to a task's name where the product is that it begins with, as a tool reads it
+SAME: Final = 1e-3  # share by which volumes and places of parts may differ between a product and the same one as a tool reads it
 _SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})
 
 
 def score_files(tasks: Iterable[tuple[Path, Task]], folder: str | Path) -> list[Row]:
     """Judge files that any tool made: `<folder>/<task>.urdf`, or the one model in `<folder>/<task>/`.
 
-    The model after the task's edit is at `<task>_edited` in place of `<task>`.
+    The model after the task's first edit is at `<task>_edited_1` in place of `<task>`, and so on. The product that a task begins with is built
+    from its own plan; a tool that writes its meshes in another way puts it at `<task>_given` as it reads and writes it, without a change.
 
     Args:
         tasks: Folders and tasks; one without a file is a row with an error.
         folder: Where the files are: URDF, MJCF, FreeCAD documents, plans or runs.
     """
-    return [_scored(task, Path(folder)) for _, task in tasks]
+    return [_scored(place, task, Path(folder)) for place, task in tasks]
 
 
-def _scored(task: Task, folder: Path) -> Row:
+def _scored(place: Path, task: Task, folder: Path) -> Row:
     row, started = Row.of(task), time.monotonic()
     try:
-        place = model_of(task.name, folder)
-        before = subject_of(place)
-        row = replace(row, judgements=_excused(task.judge(before), task, place))
-        if task.edit is not None:
-            row = _scored_edit(row, task, folder, before)
+        judged, product = _judged(task, folder, 0, _given(place, task, folder))
+        row = replace(row, judgements=judged)
+        try:
+            for stage in range(1, len(task.stages)):
+                judged, product = _judged(task, folder, stage, product)
+                row = replace(row, edited=(*row.edited, judged))
+        except ArticadError as error:
+            row = replace(row, edit_error=f"{type(error).__name__}: {error}")
     except ArticadError as error:
         row = replace(row, error=f"{type(error).__name__}: {error}")
     return replace(row, seconds=time.monotonic() - started)
+
+
+def _judged(task: Task, folder: Path, stage: int, before: Assembly | None) -> tuple[tuple[Judgement, ...], Assembly]:
+    """Return what is said of a tool's product at a stage, and the product."""
+    place = model_of(stage_name(task, stage), folder)
+    subject = replace(subject_of(place), before=before)
+    return _excused(task.judge(subject, stage), task, place), subject.assembly
+
+
+def _given(place: Path, task: Task, folder: Path) -> Assembly | None:
+    """Return the product that a task begins with: as a tool reads it, if it is the same, else built from its plan.
+
+    Raises:
+        ReadError: If what the tool says to have read is another product.
+    """
+    built = given(place, task, cache=BuildCache())
+    if built is None:
+        return None
+    try:
+        found = model_of(f"{task.name}{GIVEN}", folder)
+    except ReadError:
+        return built
+    read = subject_of(found)
+    if not same_parts(Subject(built), read, SAME):
+        raise ReadError.at(
+            found, f"{found} is not the product that {task.name} begins with.", "Put it there as the tool reads it, unchanged."
+        )
+    return read.assembly
+
+
+def stage_name(task: Task, stage: int) -> str:
+    """Return the name of a task's product at a stage."""
+    return f"{task.name}_edited_{stage}" if stage else task.name
 
 
 def _excused(judgements: tuple[Judgement, ...], task: Task, place: Path) -> tuple[Judgement, ...]:
@@ -57,17 +98,8 @@ def _excused(judgements: tuple[Judgement, ...], task: Task, place: Path) -> tupl
     )
 
 
-def _scored_edit(row: Row, task: Task, folder: Path, before: Subject) -> Row:
-    try:
-        place = model_of(f"{task.name}{EDITED}", folder)
-        edited = replace(subject_of(place), before=before.assembly)
-        return replace(row, edited=_excused(task.judge_edit(edited), task, place))
-    except ArticadError as error:
-        return replace(row, edit_error=f"{type(error).__name__}: {error}")
-
-
 def model_of(name: str, folder: Path) -> Path:
-    """Return the model of a task, or of an edited task.
+    """Return the model of a task, or of one of its stages.
 
     Raises:
         ReadError: If there is none.
@@ -76,8 +108,9 @@ def model_of(name: str, folder: Path) -> Path:
         if (file := folder / f"{name}{suffix}").is_file():
             return file
     place = folder / name
-    ours, kind = (folder / name.removesuffix(EDITED), "edit*") if name.endswith(EDITED) else (place, "run*")
-    for run in (place, *sorted(ours.glob(kind))):
+    task, _, stage = name.rpartition("_edited_")
+    ours = (folder / task).glob(f"edit_{stage}_*") if task else place.glob("run*")
+    for run in (place, *sorted(ours)):
         if (run / "request.json").is_file():
             return run
     files = [file for suffix in formats.readable() for file in sorted(place.rglob(f"*{suffix}"))]

@@ -18,9 +18,8 @@ from articad.kinematics.joints import JointType
 from articad_bench.checks import AnyCheck, JointWanted
 from articad_bench.task import Task
 
-__all__ = ["CheckRow", "Number", "NumberRow", "Sentences", "Text", "holds", "numbers_of", "sentences", "texts_of"]
+__all__ = ["CheckRow", "Number", "NumberRow", "Sentences", "edit_text", "holds", "numbers_of", "sentences", "stage_of", "texts_of"]
 
-Text = Literal["prompt", "drawing", "edit"]
 Unit = Literal["mm", "deg", "kg", "ml", "%", "turn", "count"]
 Value = tuple[Unit, float, float]
 """A number of a check: its unit and bounds."""
@@ -106,14 +105,14 @@ class Number:
     """A number that a text states.
 
     Attributes:
-        text: Which text: the prompt, the notes of the drawing, or the edit.
+        text: Which text: "prompt", "drawing" (its notes), or "edit 1" and so on.
         sentence: The sentence that it stands in.
         place: Where in the text it begins and ends.
         value: In its unit.
         unit: "count" where none is written: then it may be of any unit.
     """
 
-    text: Text
+    text: str
     sentence: str
     place: tuple[int, int]
     value: float
@@ -171,16 +170,17 @@ def sentences(task: Task) -> Sentences:
     texts, stated = texts_of(task), tuple(numbers_of(task))
     rows, used = [], set()
     for number in stated:
-        checks = task.edit_checks if number.text == "edit" else task.checks
+        checks = task.stages[stage_of(number.text)]
         holding = tuple(check.wanted for check in checks if holds(check, number, stated))
         marks = [] if holding else [mark for mark in task.unheld if _covers(mark, texts[number.text], number.place)]
         used.update(marks)
         rows.append(NumberRow(number, holding, task.unheld[marks[0]] if marks else None))
     rows = [row if row.held else NumberRow(row.number, (), _followed(row.number, [each for each in rows if each.checks])) for row in rows]
-    first = [CheckRow(check.wanted, check.kind, _stated(task, check, [n for n in stated if n.text != "edit"])) for check in task.checks]
-    edited = () if task.edit is None else task.edit.checks
-    later = [CheckRow(check.wanted, check.kind, _stated(task, check, stated)) for check in edited]
-    return Sentences(tuple(rows), (*first, *later), tuple(mark for mark in task.unheld if mark not in used))
+    told = []
+    for stage, checks in enumerate((task.checks, *(edit.checks for edit in task.edits))):
+        known = [number for number in stated if stage_of(number.text) <= stage]
+        told += [CheckRow(check.wanted, check.kind, _stated(task, check, known)) for check in checks]
+    return Sentences(tuple(rows), tuple(told), tuple(mark for mark in task.unheld if mark not in used))
 
 
 def _followed(number: Number, held: Sequence[NumberRow]) -> str | None:
@@ -191,10 +191,21 @@ def _followed(number: Number, held: Sequence[NumberRow]) -> str | None:
     )
 
 
-def texts_of(task: Task) -> dict[Text, str]:
+def edit_text(stage: int) -> str:
+    """Return the name of the text that asks for the edit before a stage."""
+    return f"edit {stage}"
+
+
+def stage_of(text: str) -> int:
+    """Return the stage that a text is about: 0 for the prompt and the drawing, 1 for the first edit."""
+    return int(text.removeprefix("edit ")) if text.startswith("edit ") else 0
+
+
+def texts_of(task: Task) -> dict[str, str]:
     """Return the texts of a task that state numbers."""
     notes = "" if task.drawing is None else " ".join(task.drawing.notes)
-    return {"prompt": task.prompt, "drawing": notes, "edit": "" if task.edit is None else task.edit.prompt}
+    edits = {edit_text(stage): edit.prompt for stage, edit in enumerate(task.edits, start=1)}
+    return {"prompt": task.prompt, "drawing": notes, **edits}
 
 
 def numbers_of(task: Task) -> Iterator[Number]:
@@ -346,7 +357,8 @@ def _stated(task: Task, check: AnyCheck, stated: Sequence[Number]) -> str | None
     told = [number for number in stated if holds(check, number, stated)]
     if told and check.kind not in FOLLOWS:
         return f"{told[0].text}: {told[0].sentence}"
-    return _drawn(task, check) or FOLLOWS.get(check.kind) or _worded(check, stated)
+    found = _drawn(task, check) or FOLLOWS.get(check.kind) or _worded(check, stated)
+    return found or (None if task.given is None else "given: what nobody asks to change")
 
 
 def _drawn(task: Task, check: AnyCheck) -> str | None:

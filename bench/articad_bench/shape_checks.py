@@ -186,6 +186,18 @@ def placed(subject: Subject) -> list[TriMesh]:
     return [mesh.transformed(subject.rest[name]) for name in subject.shaped if (mesh := subject.assembly.parts[name].mesh) is not None]
 
 
+def same_parts(first: Subject, second: Subject, slack: float) -> bool:
+    """Return whether parts of the same volume fill the same boxes at rest, within a share of the longest side of the whole and of each volume."""
+    rows, others = (
+        sorted([*mesh.bounds.ravel().round(2).tolist(), round(abs(mesh.volume), 1)] for mesh in placed(each)) for each in (first, second)
+    )
+    size = float(first.size.max())
+    return len(rows) == len(others) and all(
+        float(np.abs(np.subtract(a[:6], b[:6])).max()) <= slack * size and abs(a[6] - b[6]) <= slack * a[6]
+        for a, b in zip(rows, others, strict=True)
+    )
+
+
 def _beside(found: Round, point: FloatArray) -> float:
     """Return the distance of a point from an axis [mm]."""
     return float(np.linalg.norm(np.cross(point - found.centre, found.axis)))

@@ -37,7 +37,7 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
         "made": share_of([row.made for row in rows]),
         "checks": mean_of([_held(row.judgements) for row in rows]),
         "edited": share_of([row.edit_ok for row in rows if row.edit_ok is not None]),
-        "edit_checks": mean_of([_held(row.edited) for row in rows if row.edit]),
+        "edit_checks": mean_of([sum(map(_held, row.edited)) / row.edits for row in rows if row.edits]),
         "iterations": mean_of([row.iterations for row in rows]),
         "calls": mean_of([row.calls for row in rows]),
         "tokens": mean_of([row.tokens for row in rows]),

@@ -1,21 +1,27 @@
 """Tasks: what is asked for, and the checks that say whether it was made.
 
 A task is a folder with `task.json`, pictures that it is asked by, and a reference solution that passes its checks: `reference/plan.json`
-with `reference/parts/*.py`. A task with an `edit` continues once the product is finished:
+with `reference/parts/*.py`. A task with `edits` continues once the product is finished, one change after the other:
 
-    "edit": {
-     "prompt": "Make the drawers 20 % deeper; all else stays.",
-     "checks": [
-      {"kind": "size", "mm": [600, 480, null]},
-      {"kind": "unchanged", "number": [6, 99]}
-     ],
-     "values": {"depth": 480}
-    }
+    "edits": [
+     {
+      "prompt": "Make the drawers 20 % deeper; all else stays.",
+      "checks": [
+       {"kind": "size", "mm": [600, 480, null]},
+       {"kind": "unchanged", "number": [6, 99]}
+      ],
+      "values": {"depth": 480}
+     }
+    ]
 
-The edited product must pass `edit.checks`, and again all checks of the task that are of other kinds. So an edit that restates one check
-of a kind restates all of that kind. `unchanged` counts the parts whose shape is the same to the last bit. `values` make the change
-in the reference: parameters of its plan, in the unit that it gives them; `reference` is a second folder with `plan.json`, for changes
-that numbers alone cannot make. Its scripts are its own `parts/*.py`; those that it lacks are taken from the task's reference.
+The product is judged at each stage: as it is first, and after each edit. An edited product must pass the checks of its edit, and again all
+checks of the stage before that are of other kinds. So an edit that restates one check of a kind restates all of that kind. `unchanged`
+counts the parts whose shape is the same to the last bit as at the stage before. `values` make the change in the reference: parameters of
+its plan, in the unit that it gives them; `reference` is another folder with `plan.json`, for changes that numbers alone cannot make. What
+it lacks, the plan or some `parts/*.py`, is taken from the reference of the stage before.
+
+A task with `given` begins with a product that is there, a folder like `reference`, and asks for a change of it. Then `given` is the stage
+before the first.
 
 A task that is posed by a picture names it, and says how it is drawn from the reference:
 
@@ -45,8 +51,7 @@ from articad_bench.subject import Subject
 TASKS: Final = Path(__file__).with_name("tasks")
 """The project's own tasks, a folder each."""
 
-Kind = Literal["articulated", "static", "industrial", "hard"]
-
+Kind = Literal["articulated", "static", "industrial", "hard", "separating"]
 
 _MOVING: Final = frozenset({"freedoms", "joints", "loops", "ratio", "rise", "travel", "clear_in_motion", "certified"})
 """Kinds of checks that say that something moves."""
@@ -77,14 +82,30 @@ def _is_name(text: str) -> str:
 _Name = Annotated[str, AfterValidator(_is_name)]
 
 
+class TaskBudget(PlanObject):
+    """What a run of a task may use, all its stages together; tokens differ by provider, so characters are counted.
+
+    Attributes:
+        calls: Requests to models.
+        characters: Of the texts of requests and answers together.
+    """
+
+    calls: int | None = Field(default=None, gt=0)
+    characters: int | None = Field(default=None, gt=0)
+
+    def __str__(self) -> str:
+        told = [f"{self.calls} calls"] if self.calls else []
+        return ", ".join([*told, f"{self.characters} characters"] if self.characters else told)
+
+
 class Edit(PlanObject):
     """A change that is asked for once the product stands; every check must hold again with its new numbers.
 
     Attributes:
         prompt: What is to change.
-        checks: In place of the task's checks of the same kinds; its others must hold once more as they are.
+        checks: In place of those of the stage before of the same kinds; its others must hold once more as they are.
         values: Of the reference's parameters, in their own units, that make the change.
-        reference: Folder beside `task.json` with a second plan that makes the change, where numbers do not.
+        reference: Folder beside `task.json` with another plan that makes the change, where numbers do not.
     """
 
     prompt: str
@@ -98,13 +119,15 @@ class Task(PlanObject):
 
     Attributes:
         name: Unique.
-        kind: Which of the four sets it belongs to.
+        kind: Which of the five sets it belongs to.
         product: What it is, in a word or two: at most three tasks are of the same product.
         prompt: What is asked for; empty where pictures alone say it.
         images: Files beside the task.
         drawing: How `drawing.png`, which is one of them, is drawn.
         checks: All must hold.
-        edit: A change afterwards.
+        given: Folder beside `task.json` with the product that the task begins with, and that the prompt asks to change; or "example:NAME".
+        edits: Changes afterwards, one after the other.
+        budget: What a run may use; unlimited by default.
         reference: Folder beside `task.json` with a plan and part scripts that pass; or "example:NAME".
         unheld: Stretches of the texts with numbers that no check holds, each with the reason; see `articad_bench.sentences`.
     """
@@ -117,7 +140,9 @@ class Task(PlanObject):
     images: tuple[_Name, ...] = ()
     drawing: Drawing | None = None
     checks: tuple[AnyCheck, ...]
-    edit: Edit | None = None
+    given: _Name | None = None
+    edits: tuple[Edit, ...] = ()
+    budget: TaskBudget | None = None
     reference: _Name | None = "reference"
     unheld: dict[str, str] = Field(default_factory=dict)
 
@@ -134,20 +159,17 @@ class Task(PlanObject):
         return any(check.kind in _MOVING and getattr(check, "number", 1) not in (0, (0, 0)) for check in self.checks)
 
     @property
-    def edit_checks(self) -> tuple[AnyCheck, ...]:
-        """What must hold of the edited product: the edit's checks, and the task's own of all other kinds."""
-        if self.edit is None:
-            return ()
-        restated = {check.kind for check in self.edit.checks}
-        return (*(check for check in self.checks if check.kind not in restated), *self.edit.checks)
+    def stages(self) -> tuple[tuple[AnyCheck, ...], ...]:
+        """What must hold at first, and after each edit: the edit's checks, and those of the stage before of all other kinds."""
+        found = [self.checks]
+        for edit in self.edits:
+            restated = {check.kind for check in edit.checks}
+            found.append((*(check for check in found[-1] if check.kind not in restated), *edit.checks))
+        return tuple(found)
 
-    def judge(self, subject: Subject) -> tuple[Judgement, ...]:
-        """Return what every check says."""
-        return tuple(check.judge(subject) for check in self.checks)
-
-    def judge_edit(self, subject: Subject) -> tuple[Judgement, ...]:
-        """Return what every check says of the edited product; the subject holds what it was before."""
-        return tuple(check.judge(subject) for check in self.edit_checks)
+    def judge(self, subject: Subject, stage: int = 0) -> tuple[Judgement, ...]:
+        """Return what every check says of the product at a stage, the first by default; the subject holds what it was at the stage before."""
+        return tuple(check.judge(subject) for check in self.stages[stage])
 
 
 def read_json(file: Path) -> Any:
@@ -212,8 +234,8 @@ def as_stored(task: Task) -> bytes:
     """Return the text of a task's `task.json`: without values that are the default, but each check with its kind."""
     row = {"schema": task.form} | task.model_dump(mode="json", by_alias=True, exclude_defaults=True)
     row["checks"] = checks_as_stored(task.checks)
-    if task.edit is not None:
-        row["edit"]["checks"] = checks_as_stored(task.edit.checks)
+    for stored, edit in zip(row.get("edits", ()), task.edits, strict=True):
+        stored["checks"] = checks_as_stored(edit.checks)
     return f"{json.dumps(row, indent=1, ensure_ascii=False)}\n".encode()
 
 

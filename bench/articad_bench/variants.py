@@ -14,7 +14,7 @@ import shutil
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations, islice, product
+from itertools import combinations, islice, pairwise, product
 from pathlib import Path
 from typing import Any, Final
 
@@ -32,8 +32,8 @@ from articad_bench.bindings import BOUND, NotBoundError, bound_task
 from articad_bench.cheat_run import refused_by
 from articad_bench.checks import AnyCheck
 from articad_bench.drawing import DRAWING, draw_task
-from articad_bench.reference import edited_reference, reference, reference_folder
-from articad_bench.sentences import Number, Text, holds, numbers_of, sentences, texts_of
+from articad_bench.reference import reference, reference_folder, references
+from articad_bench.sentences import Number, edit_text, holds, numbers_of, sentences, stage_of, texts_of
 from articad_bench.subject import Subject
 from articad_bench.task import Task, as_stored
 
@@ -98,8 +98,10 @@ def make_variant(
         NoVariantError: If no draw of parameters gives one, or the folder is there already.
         ArticadError: If the task has no reference, or it does not build.
     """
-    if task.edit is not None and task.edit.reference is not None:
-        raise NoVariantError(f"{task.name}: a second plan makes its edit.")
+    if any(edit.reference is not None for edit in task.edits):
+        raise NoVariantError(f"{task.name}: another plan makes an edit.")
+    if task.given is not None:
+        raise NoVariantError(f"{task.name}: it begins with a product, whose numbers stay.")
     target = out / task.name
     if target.exists():
         raise NoVariantError(f"{task.name}: {target} is there already, and is not replaced. Name another folder.")
@@ -139,24 +141,21 @@ def _made(
     kernel: PartKernel | None,
 ) -> Task:
     changes = list(changed.values())
-    fresh, later = task.model_copy(update={"reference": "reference"}), changes
-    if task.edit is not None:
-        edited = {
-            name: value * changed[name][1] / changed[name][0] if name in changed else value for name, value in task.edit.values.items()
-        }
-        edited = {name: _near(value) if name in changed else value for name, value in edited.items()}
-        later = [(task.edit.values.get(name, old), edited.get(name, new)) for name, (old, new) in changed.items()]
-        fresh = fresh.model_copy(update={"edit": task.edit.model_copy(update={"values": edited})})
+    fresh, stages = task.model_copy(update={"reference": "reference"}), [changed]
+    for number, edit in enumerate(task.edits):
+        values = {name: value * changed[name][1] / changed[name][0] if name in changed else value for name, value in edit.values.items()}
+        values = {name: _near(value) if name in changed else value for name, value in values.items()}
+        stages.append({name: (edit.values.get(name, old), values.get(name, new)) for name, (old, new) in stages[-1].items()})
+        fresh = _with_edit(fresh, number, values=values)
     _write_reference(plan, reference_folder(folder, task), target / "reference")
-    built = reference(target, fresh, cache=cache, kernel=kernel)
-    subject, after = Subject(built), None
+    products = list(references(target, fresh, cache=cache, kernel=kernel))
+    subject = Subject(products[0])
+    after = [Subject(product, before=before) for before, product in pairwise(products)]
     fresh = fresh.model_copy(update={"checks": _following(_unbound(task.checks), subject, changes)})
-    if fresh.edit is not None and task.edit is not None:
-        after = Subject(edited_reference(target, fresh, built, cache=cache, kernel=kernel), before=built)
-        again = _following(_unbound(task.edit.checks), after, later)
-        fresh = fresh.model_copy(update={"edit": fresh.edit.model_copy(update={"checks": again})})
-        _hold(_unbound(fresh.edit_checks), after)
-    fresh = _worded(task, fresh, changes, later)
+    for number, (edit, edited) in enumerate(zip(task.edits, after, strict=True)):
+        fresh = _with_edit(fresh, number, checks=_following(_unbound(edit.checks), edited, list(stages[number + 1].values())))
+        _hold(_unbound(fresh.stages[number + 1]), edited)
+    fresh = _worded(task, fresh, [list(stage.values()) for stage in stages])
     _told(fresh)
     if refused_by(fresh, Subject(original)) is None:
         raise NoVariantError("the original reference passes")
@@ -165,9 +164,16 @@ def _made(
     except NotBoundError as error:
         raise NoVariantError(str(error)) from error
     if fresh.drawing is not None and DRAWING in fresh.images:
-        scratch.write(target / DRAWING, draw_task(built, fresh.drawing))
+        scratch.write(target / DRAWING, draw_task(products[0], fresh.drawing))
     scratch.write(target / "task.json", as_stored(fresh))
     return fresh
+
+
+def _with_edit(task: Task, number: int, **changes: Any) -> Task:
+    """Return a task of which one edit, counted from 0, says something else."""
+    edits = list(task.edits)
+    edits[number] = edits[number].model_copy(update=changes)
+    return task.model_copy(update={"edits": tuple(edits)})
 
 
 def _write_reference(plan: AssemblyPlan, source: Path, target: Path) -> None:
@@ -381,18 +387,18 @@ def _shown(value: float) -> float:
 # ---------------------------------------------------------------------- words
 
 
-def _worded(task: Task, fresh: Task, changes: Sequence[_Change], later: Sequence[_Change]) -> Task:
+def _worded(task: Task, fresh: Task, stages: Sequence[Sequence[_Change]]) -> Task:
     """Return the new task with the texts of the old one, in which the numbers are those that its checks hold."""
     stated = tuple(numbers_of(task))
-    replaced: dict[str, list[tuple[tuple[int, int], str]]] = {"prompt": [], "drawing": [], "edit": []}
+    replaced: dict[str, list[tuple[tuple[int, int], str]]] = {name: [] for name in texts_of(task)}
     for number in stated:
-        known = [*later, *changes] if number.text == "edit" else list(changes)
+        known = [change for stage in reversed(stages[: stage_of(number.text) + 1]) for change in stage]
         value = _new_value(task, fresh, number, stated, known)
         if value != number.value:
             replaced[number.text].append((number.place, _written(task, number, value)))
     update: dict[str, Any] = {"prompt": _with(task.prompt, replaced["prompt"])}
-    if fresh.edit is not None and task.edit is not None:
-        update["edit"] = fresh.edit.model_copy(update={"prompt": _with(task.edit.prompt, replaced["edit"])})
+    for stage, edit in enumerate(task.edits, start=1):
+        fresh = _with_edit(fresh, stage - 1, prompt=_with(edit.prompt, replaced[edit_text(stage)]))
     if task.drawing is not None:
         notes, rest = [], list(replaced["drawing"])
         start = 0
@@ -404,7 +410,7 @@ def _worded(task: Task, fresh: Task, changes: Sequence[_Change], later: Sequence
     marks = {}
     texts = texts_of(task)
     for mark, reason in task.unheld.items():
-        where: Text = next((name for name, text in texts.items() if mark in text), "prompt")
+        where = next((name for name, text in texts.items() if mark in text), "prompt")
         start = max(texts[where].find(mark), 0)
         mine = [((a - start, b - start), text) for (a, b), text in replaced[where] if start <= a and b <= start + len(mark)]
         marks[_with(mark, mine)] = reason
@@ -417,8 +423,8 @@ def _new_value(task: Task, fresh: Task, number: Number, stated: Sequence[Number]
         if number.unit in {"mm", "deg", "count"} and _figures(task, number) and abs(number.value - old) < 1e-9:
             return new
     pairs = [(_unbound(task.checks), _unbound(fresh.checks))]
-    if number.text == "edit" and task.edit is not None and fresh.edit is not None:
-        pairs.append((task.edit.checks, fresh.edit.checks))
+    for edit, renewed in list(zip(task.edits, fresh.edits, strict=True))[: stage_of(number.text)]:
+        pairs.append((_unbound(edit.checks), _unbound(renewed.checks)))
     holding = [now for was, are in pairs for then, now in zip(was, are, strict=False) if holds(then, number, stated)]
     if not holding or any(holds(check, number, stated) for check in holding):
         return number.value

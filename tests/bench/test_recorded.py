@@ -39,7 +39,7 @@ def test_a_benchmark_s_own_folder_is_a_recording_edits_included(tmp_path: Path, 
         run,
         "thicker",
         llm=Scripted({"edit/1": json.dumps(thicker)}),
-        out=tmp_path / "before" / "flap" / "edit_1",
+        out=tmp_path / "before" / "flap" / "edit_1_1",
         **stories.settings(**quiet),
     )
     assert assembly_of(edited).parts
@@ -49,7 +49,7 @@ def test_a_benchmark_s_own_folder_is_a_recording_edits_included(tmp_path: Path, 
         "product": "flap",
         "prompt": "a flap",
         "checks": [{"kind": "parts", "number": [2, 2]}],
-        "edit": {"prompt": "thicker", "checks": [{"kind": "unchanged", "number": [1, 1]}]},
+        "edits": [{"prompt": "thicker", "checks": [{"kind": "unchanged", "number": [1, 1]}]}],
         "reference": None,
     }
     (tmp_path / "tasks" / "flap").mkdir(parents=True)

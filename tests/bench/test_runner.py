@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from articad_bench.row import Row, rows_in
 from articad_bench.runner import run_tasks
 from articad_bench.scoring import score_files
 from articad_bench.table import table
-from articad_bench.task import Task, read_task, tasks_in
+from articad_bench.task import Task, TaskBudget, read_task, tasks_in
 from tests.agents import stories
 from tests.agents.openai_stub import Canned, openai_stub
 
@@ -104,7 +105,7 @@ EDIT = {"prompt": "a thicker flap", "checks": [{"kind": "part_size", "mm": [30, 
 def edited(tasks: list[tuple[Path, Task]]) -> list[tuple[Path, Task]]:
     """The first task, with an edit."""
     (folder, task), *_ = tasks
-    return [(folder, Task.model_validate(task.model_dump(mode="json") | {"edit": EDIT}))]
+    return [(folder, Task.model_validate(task.model_dump(mode="json") | {"edits": [EDIT]}))]
 
 
 def test_an_edit_is_asked_for_once_the_product_stands_and_is_judged_with_all_that_must_hold_again(
@@ -119,14 +120,109 @@ def test_an_edit_is_asked_for_once_the_product_stands_and_is_judged_with_all_tha
     (poor,) = run(asked, tmp_path / "still", lambda _task: stories.flap(edit__1=json.dumps(still)))
     (none,) = run(asked, tmp_path / "none", lambda _task: stories.flap(edit__1="no"))
 
-    assert [judgement.kind for judgement in row.edited] == ["parts", "freedoms", "solids", "clear_at_rest", "part_size", "unchanged"]
+    assert [judgement.kind for judgement in row.edited[0]] == ["parts", "freedoms", "solids", "clear_at_rest", "part_size", "unchanged"]
     assert row.ok, row
     assert row.calls == len(list((tmp_path / "good").glob("*/run_*/llm/**/*.json"))) + 1
-    assert poor.failed == ("edit:part_size", "edit:unchanged")
+    assert poor.failed == ("edit_1:part_size", "edit_1:unchanged")
     assert not poor.ok
     assert "edit/2" in str(none.edit_error)
     assert (none.error, none.ok, none.made) == (None, False, True)
     assert table([row, poor, none])["all"]["edited"]["mean"] == pytest.approx(0.3333)
+
+
+def beginning_with_a_flap(tasks: list[tuple[Path, Task]], **more: Any) -> list[tuple[Path, Task]]:
+    """The first task, which begins with a plate and a flap that is too thin, with one edit that lengthens it, and one that makes it thinner."""
+    (folder, task), *_ = tasks
+    (folder / "thin" / "parts").mkdir(parents=True)
+    (folder / "thin" / "plan.json").write_text(json.dumps(stories.FLAP_PLAN))
+    for name, script in stories.FLAP_SCRIPTS.items():
+        (folder / "thin" / "parts" / f"{name}.py").write_text(script)
+    unchanged = {"kind": "unchanged", "number": [1, 1]}
+    edits = [{"prompt": text, "checks": [{"kind": "part_size", "mm": mm}, unchanged]} for text, mm in LATER.items()]
+    asked = {"prompt": EDIT["prompt"], "checks": [*CHECKS, *EDIT["checks"]], "given": "thin", "edits": edits}
+    return [(folder, Task.model_validate(task.model_dump(mode="json") | asked | more))]
+
+
+LATER = {"a longer flap": [36, 10, 3], "a thinner one": [36, 10, 2.5]}
+CHAIN = [json.dumps(THICKER | {"changes": {f"parts.flap.dimensions.{name}": mm}}) for name, mm in (("length", 36), ("thickness", 2.5))]
+
+
+def test_a_task_begins_with_a_product_and_each_edit_of_its_chain_is_judged_against_the_stage_before(
+    tasks: list[tuple[Path, Task]], tmp_path: Path
+) -> None:
+    asked, first = beginning_with_a_flap(tasks), Scripted({"edit/1": json.dumps(THICKER)})
+    (row,) = run(asked, tmp_path / "good", lambda _task: first, ask_edit=lambda _task, n: Scripted({"edit/1": CHAIN[n - 1]}))
+    (poor,) = run(asked, tmp_path / "poor", lambda _task: first, ask_edit=lambda _task, _n: Scripted({"edit/1": CHAIN[1]}))
+    (none,) = run(asked, tmp_path / "none", lambda _task: first, ask_edit=lambda _task, _n: Scripted({"edit/1": "no"}))
+    (scored,) = score_files(asked, tmp_path / "good")
+
+    assert row.ok, row
+    assert [len(stage) for stage in row.edited] == [6, 6]
+    assert row.calls == 3
+    assert Row.from_json(row.to_json()) == row
+    assert scored.ok, scored
+    assert poor.failed == ("edit_1:part_size", "edit_2:part_size", "edit_2:unchanged")
+    assert (poor.ok, none.ok, none.edited, none.error) == (False, False, (), None)
+    assert "edit/2" in str(none.edit_error)
+    assert table([row, poor, none])["all"]["edited"]["mean"] == pytest.approx(0.3333)
+    assert table([poor])["all"]["edit_checks"]["mean"] == pytest.approx((5 / 6 + 4 / 6) / 2, abs=1e-4)
+
+
+def test_the_product_that_a_task_begins_with_is_scored_as_a_tool_reads_it_and_must_be_the_same(
+    tasks: list[tuple[Path, Task]], tmp_path: Path
+) -> None:
+    asked = beginning_with_a_flap(tasks, edits=[])
+    run(asked, tmp_path / "out", lambda _task: Scripted({"edit/1": json.dumps(THICKER)}))
+    models, folder = tmp_path / "models", asked[0][0]
+    assert main(["build", str(folder / "thin"), "--out", str(tmp_path / "thin"), "--export", "urdf"]) == 0
+    models.mkdir()
+    shutil.copytree(next((tmp_path / "out" / "flap_0").glob("run_*/export/urdf")), models / "flap_0")
+
+    (strange,) = score_files(asked, models)  # its meshes are rounded, so no shape is the same to the last bit
+    shutil.copytree(tmp_path / "thin" / "export" / "urdf", models / "flap_0_given")
+    (read,) = score_files(asked, models)
+    shutil.rmtree(models / "flap_0_given")
+    shutil.copytree(models / "flap_0", models / "flap_0_given")
+    (another,) = score_files(asked, models)
+
+    assert strange.failed == ("unchanged",)
+    assert read.ok, read
+    assert "not the product that flap_0 begins with" in str(another.error)
+
+
+def test_a_run_uses_no_more_than_the_budget_of_its_task_allows_in_all_its_stages(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:
+    def of(**budget: int) -> Row:
+        asked = [(folder, task.model_copy(update={"budget": TaskBudget(**budget)})) for folder, task in chain]
+        (row,) = run(asked, tmp_path / str(budget), lambda _task: Scripted({"edit/1": json.dumps(THICKER)}), ask_edit=edits)
+        return row
+
+    def edits(_task: Task, number: int) -> LLM:
+        return Scripted({"edit/1": CHAIN[number - 1]})
+
+    chain = beginning_with_a_flap(tasks)
+    enough, few = of(calls=3, characters=1_000_000), of(calls=2)
+    assert enough.ok, enough
+    assert (len(few.edited), few.calls) == (1, 2)
+    assert "The task allows 2 calls" in str(few.edit_error)
+    short = of(characters=1000)
+    assert "The task allows 1000 characters; 0 were used" in str(short.error)
+
+
+def test_what_was_answered_before_a_run_was_killed_counts(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:
+    chain = [(folder, task.model_copy(update={"budget": TaskBudget(calls=2)})) for folder, task in beginning_with_a_flap(tasks)]
+    asked: list[int] = []
+
+    def edits(_task: Task, number: int) -> LLM:
+        if not asked:
+            asked.append(number)
+            raise TransportError("no line")
+        return Scripted({"edit/1": CHAIN[number - 1]})
+
+    (lost,) = run(chain, tmp_path / "out", lambda _task: Scripted({"edit/1": json.dumps(THICKER)}), ask_edit=edits)
+    (again,) = run(chain, tmp_path / "out", lambda _task: Scripted({}), ask_edit=edits)
+
+    assert (len(lost.edited), len(again.edited), again.calls) == (0, 1, 2)
+    assert "The task allows 2 calls" in str(again.edit_error)
 
 
 def test_an_edited_file_of_any_tool_is_scored_against_what_it_was(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:
@@ -134,17 +230,17 @@ def test_an_edited_file_of_any_tool_is_scored_against_what_it_was(tasks: list[tu
     run(asked, tmp_path / "out", lambda _task: stories.flap(edit__1=json.dumps(THICKER)))
     models = tmp_path / "models"
     models.mkdir()
-    for kind, name in (("run", "flap_0"), ("edit", "flap_0_edited")):
+    for kind, name in (("run", "flap_0"), ("edit_1", "flap_0_edited_1")):
         next((tmp_path / "out" / "flap_0").glob(f"{kind}_*/export/urdf")).rename(models / name)
 
     (row,) = score_files(asked, models)
     (ours,) = score_files(asked, tmp_path / "out")
-    (models / "flap_0_edited").rename(models / "flap_1_edited")
+    (models / "flap_0_edited_1").rename(models / "flap_1_edited_1")
     (missing,) = score_files(asked, models)
 
     assert row.ok, row
     assert ours.ok, ours
-    assert "no model of flap_0_edited" in str(missing.edit_error)
+    assert "no model of flap_0_edited_1" in str(missing.edit_error)
     assert not missing.ok
 
 

@@ -85,12 +85,12 @@ def test_a_check_whose_number_no_text_states_is_found() -> None:
 
 def test_the_numbers_of_an_edit_are_held_by_the_checks_of_the_edited_product() -> None:
     edit = {"prompt": "Make it 80 mm long.", "checks": [{"kind": "part_size", "mm": [80, None, None]}]}
-    table = sentences(task("A bar 90 mm long.", {"kind": "part_size", "mm": [90, None, None]}, edit=edit))
+    table = sentences(task("A bar 90 mm long.", {"kind": "part_size", "mm": [90, None, None]}, edits=[edit]))
 
     assert [row.held for row in table.numbers] == [True, True]
-    assert [row.stated for row in table.checks] == ["prompt: A bar 90 mm long.", "edit: Make it 80 mm long."]
+    assert [row.stated for row in table.checks] == ["prompt: A bar 90 mm long.", "edit 1: Make it 80 mm long."]
     other = edit | {"checks": [{"kind": "part_size", "mm": [85, None, None]}]}
-    assert [row.held for row in sentences(task("A bar.", edit=other)).numbers] == [False]
+    assert [row.held for row in sentences(task("A bar.", edits=[other])).numbers] == [False]
 
 
 @pytest.mark.parametrize("name", OURS)

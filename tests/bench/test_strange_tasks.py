@@ -7,17 +7,14 @@ import os
 import shutil
 import signal
 from collections.abc import Callable, Iterator
-from functools import partial
 from pathlib import Path
 
 import pytest
 
 from articad import examples
-from articad.assembly import Assembly
 from articad.errors import ReadError
-from articad.plan.schema import AssemblyPlan
 from articad_bench.judge import JUDGED, opinions_in
-from articad_bench.reference import edited_reference, reference
+from articad_bench.reference import references
 from articad_bench.row import ROW, kept_row, rows_in
 from articad_bench.task import read_image, read_json, read_task, write_task
 from tests.crash.stand_in import FixedKernel
@@ -118,7 +115,7 @@ def stranger(task: Path) -> Path:
 def test_a_task_names_no_solution_outside_its_folder(whose: str, name: str, task: Path, stranger: Path) -> None:
     named = str(stranger) if name == "ABSOLUTE" else name
     edit = {"prompt": "wider", "checks": TASK["checks"], "reference": named}
-    (task / "task.json").write_text(json.dumps(TASK | ({"edit": edit} if whose == "edit" else {"reference": named})))
+    (task / "task.json").write_text(json.dumps(TASK | ({"edits": [edit]} if whose == "edit" else {"reference": named})))
     with pytest.raises(ReadError, match="reference"):
         read_task(task)
 
@@ -128,7 +125,7 @@ def test_a_task_names_no_solution_outside_its_folder(whose: str, name: str, task
 def test_a_link_to_a_solution_outside_the_tasks_folder_is_not_followed(whose: str, linked: str, task: Path, stranger: Path) -> None:
     """The folder of a solution, its plan, or the folder of its scripts is a link."""
     edit = {"prompt": "wider", "checks": TASK["checks"], "reference": "edited"}
-    (task / "task.json").write_text(json.dumps(TASK | {"edit": edit}))
+    (task / "task.json").write_text(json.dumps(TASK | {"edits": [edit]}))
     for name in ("reference", "edited"):
         shutil.copytree(stranger, task / name)
     place = task / ("reference" if whose == "reference" else "edited")
@@ -137,7 +134,5 @@ def test_a_link_to_a_solution_outside_the_tasks_folder_is_not_followed(whose: st
     else:
         (place / linked).unlink()
     (place / linked).symlink_to(stranger / linked)
-    built = Assembly.from_plan(AssemblyPlan.load(stranger), stranger / "parts", kernel=FixedKernel())
-    build = reference if whose == "reference" else partial(edited_reference, before=built)
     with pytest.raises(ReadError, match="link"):
-        build(task, read_task(task), kernel=FixedKernel())
+        list(references(task, read_task(task), kernel=FixedKernel()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from articad.cli import main
 from articad.kernels.kernel import BuildCache
 from articad.plan.schema import AssemblyPlan
 from articad_bench.cheat_run import refused_by
-from articad_bench.reference import edited_reference, reference
+from articad_bench.reference import reference, references
 from articad_bench.sentences import sentences
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, read_task, tasks_in
@@ -33,11 +34,13 @@ TRAY: dict[str, Any] = {
         {"kind": "part_size", "mm": [80, 50, 30], "tolerance": 0.01},
         {"kind": "clear_at_rest"},
     ],
-    "edit": {
-        "prompt": "Make it 90 mm wide in place of 80.",
-        "checks": [{"kind": "part_size", "mm": [90, 50, 30], "tolerance": 0.01}],
-        "values": {"width": 90},
-    },
+    "edits": [
+        {
+            "prompt": "Make it 90 mm wide in place of 80.",
+            "checks": [{"kind": "part_size", "mm": [90, 50, 30], "tolerance": 0.01}],
+            "values": {"width": 90},
+        }
+    ],
     "unheld": {"in place of 80": "What it was."},
 }
 
@@ -51,19 +54,18 @@ def tray(folder: Path, **changes: Any) -> Path:
     return place
 
 
-def references(folder: Path) -> tuple[Assembly, Assembly | None]:
-    """Return the references of a task as they are read from its files, the edited one last."""
-    task = read_task(folder)
-    built = reference(folder, task, cache=shared_cache())
-    return built, None if task.edit is None else edited_reference(folder, task, built, cache=shared_cache())
+def answer(folder: Path) -> Assembly:
+    """Return the reference of a task as it is read from its files."""
+    return reference(folder, read_task(folder), cache=shared_cache())
 
 
 def passes(folder: Path) -> None:
     """A variant is a task like any other: its references pass, every number is held, and every check is stated."""
-    task, (built, after) = read_task(folder), references(folder)
-    assert [judged for judged in task.judge(Subject(built)) if not judged.ok] == []
-    if after is not None:
-        assert [judged for judged in task.judge_edit(Subject(after, before=built)) if not judged.ok] == []
+    task = read_task(folder)
+    stages = [None, *references(folder, task, cache=shared_cache())]
+    for stage, (before, product) in enumerate(pairwise(stages)):
+        assert product is not None
+        assert [judged for judged in task.judge(Subject(product, before=before), stage) if not judged.ok] == []
     table = sentences(task)
     assert [row.number.value for row in table.numbers if not row.held] == []
     assert [row.check for row in table.checks if row.stated is None] == []
@@ -85,9 +87,9 @@ def test_a_seed_gives_a_task_of_its_own_and_no_answer_to_another_seed_passes(tmp
             assert f" {new:g} " in variant.task.prompt, name
     assert first.changed == again.changed != second.changed
     assert (first.folder / "task.json").read_bytes() == (again.folder / "task.json").read_bytes()
-    leaked = [references(place)[0] for place in (folder, first.folder, second.folder)]
+    leaked = [answer(place) for place in (folder, first.folder, second.folder)]
     for variant, answers in ((first, (leaked[0], leaked[2])), (second, leaked[:2])):
-        assert all(refused_by(variant.task, Subject(answer)) is not None for answer in answers)
+        assert all(refused_by(variant.task, Subject(other)) is not None for other in answers)
 
 
 @pytest.mark.slow
@@ -99,15 +101,15 @@ def test_an_edit_follows_with_what_it_says_of_the_number_before(tmp_path: Path) 
         checks=[TRAY["checks"][0], {"kind": "part_size", "mm": [80, None, None]}],
     )
     stored = json.loads((folder / "task.json").read_text())
-    stored["edit"]["checks"] = [{"kind": "part_size", "mm": [90, None, None]}]
+    stored["edits"][0]["checks"] = [{"kind": "part_size", "mm": [90, None, None]}]
     (folder / "task.json").write_text(json.dumps(stored))
 
     variant = make_variant(folder, read_task(folder), 3, tmp_path / "made", cache=shared_cache())
 
     width, plan = variant.changed["width"][1], AssemblyPlan.load(variant.folder / "reference")
-    assert variant.task.edit is not None
-    wider = variant.task.edit.values["width"]
-    assert variant.task.edit.prompt == f"Make it {wider:g} mm wide in place of {width:g}."
+    (edit,) = variant.task.edits
+    wider = edit.values["width"]
+    assert edit.prompt == f"Make it {wider:g} mm wide in place of {width:g}."
     assert list(variant.task.unheld) == [f"in place of {width:g}"]
     assert wider == pytest.approx(90 * width / 80, abs=0.5)
     assert next(each.value for each in plan.parameters if each.name == "width") == width
@@ -116,12 +118,12 @@ def test_an_edit_follows_with_what_it_says_of_the_number_before(tmp_path: Path) 
 
 @pytest.mark.slow
 def test_a_task_whose_numbers_cannot_change_gives_no_variant_and_says_why(tmp_path: Path) -> None:
-    silent = tray(tmp_path / "silent", prompt="A tray with a lid.", edit=None, unheld={}, checks=TRAY["checks"][:1])
+    silent = tray(tmp_path / "silent", prompt="A tray with a lid.", edits=[], unheld={}, checks=TRAY["checks"][:1])
     with pytest.raises(NoVariantError, match="states no number"):
         make_variant(silent, read_task(silent), 1, tmp_path / "made", cache=shared_cache())
 
     wide = {"kind": "part_size", "mm": [80, None, None], "tolerance": 0.5}
-    loose = tray(tmp_path / "loose", prompt="A tray 80 mm wide.", edit=None, unheld={}, checks=[wide])
+    loose = tray(tmp_path / "loose", prompt="A tray 80 mm wide.", edits=[], unheld={}, checks=[wide])
     with pytest.raises(NoVariantError, match="the last one, width"):
         make_variant(loose, read_task(loose), 1, tmp_path / "made", cache=shared_cache())
     assert not (tmp_path / "made" / "tray").exists()
@@ -130,7 +132,7 @@ def test_a_task_whose_numbers_cannot_change_gives_no_variant_and_says_why(tmp_pa
 @pytest.mark.slow
 def test_the_command_makes_variants_and_tells_which_tasks_have_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tray(tmp_path / "tasks")
-    other = tray(tmp_path / "tasks" / "more", name="silent", prompt="A tray.", edit=None, unheld={}, checks=TRAY["checks"][:1])
+    other = tray(tmp_path / "tasks" / "more", name="silent", prompt="A tray.", edits=[], unheld={}, checks=TRAY["checks"][:1])
 
     assert main(["bench", "make", "--seed", "2", "--tasks", str(tmp_path / "tasks"), "--out", str(tmp_path / "made")]) == 0
 
@@ -159,4 +161,4 @@ def test_variants_of_our_tasks_are_passed_by_their_own_references_alone(name: st
     for variant, other in ((made[0], made[1]), (made[1], made[0])):
         passes(variant.folder)
         if variant.changed != other.changed:
-            assert refused_by(variant.task, Subject(references(other.folder)[0])) is not None
+            assert refused_by(variant.task, Subject(answer(other.folder))) is not None
