@@ -33,7 +33,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Self
 
-from articad.findings import Finding, Findings
+from articad.findings import Finding, Findings, bounded
 
 
 class ArticadError(Exception):
@@ -48,8 +48,8 @@ class ArticadError(Exception):
     default_stage = "plan"
 
     def __init__(self, message: str, *, findings: Iterable[Finding] = (), stage: str | None = None, parts: Iterable[str] = ()) -> None:
-        super().__init__(message)
-        self.message = message
+        self.message = bounded(message)
+        super().__init__(self.message)
         self.findings = Findings(findings)
         self.stage = stage or (str(self.findings[0].stage) if self.findings else self.default_stage)
         self.parts = tuple(parts) or tuple(dict.fromkeys(part for finding in self.findings for part in finding.parts))

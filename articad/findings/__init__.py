@@ -18,11 +18,22 @@ Severity = Literal["error", "warning", "info"]
 Route = Literal["design", "code"]
 Stage = Literal["plan", "build", "interference", "motion", "fit", "export", "import", "audit", "model"]
 
+MOST_CHARACTERS = 10_000
+"""Of a message, a hint or a place; of longer ones the middle is left out."""
+
 _SEVERITY_OF_PREFIX: dict[str, Severity] = {"E": "error", "W": "warning", "I": "info"}
 _SEVERITY_ORDER = {"error": 0, "warning": 1, "info": 2}
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _SAID = 2e-3  # relative difference up to which a number in a message counts as the same
 _SIGNIFICANT_DIGITS = 6  # reports are for people, and must not depend on the last bits of numbers
+
+
+def bounded(text: str) -> str:
+    """Return a text without its middle if it is longer than MOST_CHARACTERS: names in somebody's file may have millions of characters."""
+    if len(text) <= MOST_CHARACTERS:
+        return text
+    end = MOST_CHARACTERS // 4
+    return f"{text[: 2 * end]} … [{len(text) - 3 * end} characters are left out] … {text[-end:]}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,6 +70,8 @@ class Finding:
 
     def __post_init__(self) -> None:
         registered = CODES[self.code]
+        for text in ("where", "message", "hint"):
+            object.__setattr__(self, text, bounded(getattr(self, text)))
         if self.stage is None:
             object.__setattr__(self, "stage", registered.stage)
         if self.route is None:

@@ -11,8 +11,10 @@ import pytest
 from articad.errors import ReadError
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
+from articad.findings import MOST_CHARACTERS
 from articad.importers import reading, urdf
 from articad.importers.mjcf import read_mjcf
+from articad.importers.sdf import read_sdf
 from articad.importers.urdf import read_urdf
 from tests.assemblies import geared_pair
 
@@ -150,6 +152,30 @@ def test_a_missing_mesh_is_left_out_with_a_finding(tmp_path: Path) -> None:
 
     assert assembly.findings.codes == ("W_IMPORT_MESH",)
     assert not assembly.parts["a"].visuals
+
+
+LONG = "n" * 60_000
+NAMED = {
+    "a mesh": ("a.urdf", robot(f'<link name="a"><visual><geometry><mesh filename="{LONG}.stl"/></geometry></visual></link>')),
+    "a mesh of SDF": (
+        "a.sdf",
+        f'<sdf version="1.9"><model name="m"><link name="a"><visual name="v"><geometry><mesh><uri>{LONG * 30}.stl</uri></mesh></geometry></visual></link></model></sdf>',
+    ),
+}
+
+
+@pytest.mark.parametrize("what", NAMED)
+def test_a_name_of_many_characters_is_not_repeated(what: str, tmp_path: Path) -> None:
+    file, content = NAMED[what]
+    (tmp_path / file).write_text(content)
+    try:
+        findings = (read_sdf if file.endswith(".sdf") else read_urdf)(tmp_path / file).findings
+    except ReadError as error:
+        findings = error.findings
+        assert len(str(error)) <= 1.1 * MOST_CHARACTERS
+    assert findings
+    assert all(len(str(finding)) <= 3 * MOST_CHARACTERS for finding in findings)
+    assert any("characters are left out" in str(finding) for finding in findings)
 
 
 def test_packages_are_looked_up_below_the_root(tmp_path: Path) -> None:
