@@ -40,11 +40,24 @@ _SOURCES: Final = (
     "likeness_checks.py",
     "whole_checks.py",
     "spacing_checks.py",
+    "function_checks.py",
+    "strength_checks.py",
+    "stack_checks.py",
+    "wanted.py",
     "solids.py",
     "subject.py",
     "cheats.py",
 )
-COSTLY: Final = ("made", "captive", "clear_in_motion", "certified", "simulates")  # the least costly first
+COSTLY: Final = (
+    "effort",
+    "folds",
+    "made",
+    "captive",
+    "clear_in_motion",
+    "certified",
+    "put_together",
+    "simulates",
+)  # the least costly first
 
 _ABOUT: Final = """\
 # Cheats

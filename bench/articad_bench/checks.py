@@ -6,7 +6,6 @@ a part by its size. Each judgement says what was wanted and what was measured.
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -21,56 +20,30 @@ from articad.assembly import Assembly
 from articad.disassembly.ways import Ways, ways_out
 from articad.interference.gauge import Gauge
 from articad.kinematics.joints import Joint, JointType
-from articad.plan.fields import PlanObject
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
-from articad_bench.check import Bounds, Vector, in_words
+from articad_bench.check import Bounds, in_words
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
+from articad_bench.function_checks import Effort, Folds, Passes, PutTogether
 from articad_bench.likeness_checks import Arranged, Handed, Matter
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
 from articad_bench.spacing_checks import Links, Square
+from articad_bench.stack_checks import Stack
+from articad_bench.strength_checks import Carries
 from articad_bench.subject import Subject
+from articad_bench.wanted import JointWanted as JointWanted  # noqa: PLC0414
+from articad_bench.wanted import in_numbers, parallel
 from articad_bench.whole_checks import Extent, Threads
 
-AXIS_RAD: Final = math.radians(5)  # by which an axis may lean from the one asked for
 _ABOUT_LINE: Final = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
-SPAN_SLACK: Final = 1e-6  # deg or mm: what becomes of a range that is converted to radians and back
 STROKE: Final = 9  # values of a driver at which what follows it is measured
 CLOSED_MM: Final = 1e-6
 LEAST_WALL_MM: Final = 0.2  # a wire or a foil is no part
 WALL_SAMPLES: Final = 60
 SAME_LINE_MM: Final = 0.1
-
-
-class JointWanted(PlanObject):
-    """Which joints are meant: by type, direction of axis at rest and range."""
-
-    type: JointType
-    axis: Vector | None = None
-    span: Bounds | Literal["endless"] | None = None
-
-    def found(self, subject: Subject) -> list[Joint]:
-        """Return the joints of a subject that are like this."""
-        return [joint for joint in subject.assembly.joints if self._is(subject, joint)]
-
-    def _is(self, subject: Subject, joint: Joint) -> bool:
-        if joint.type is not self.type:
-            return False
-        if self.axis is not None and not _parallel(subject.axis(joint), np.array(self.axis)):
-            return False
-        span = subject.span(joint)
-        if self.span == "endless":
-            return math.isinf(span)
-        return self.span is None or self.span[0] - SPAN_SLACK <= span <= self.span[1] + SPAN_SLACK
-
-    def __str__(self) -> str:
-        axis = "" if self.axis is None else f" about or along {_numbers(self.axis)}"
-        unit = "mm" if self.type in {JointType.SLIDER, JointType.CYLINDRICAL} else "°"
-        span = "" if self.span is None else ", endless" if self.span == "endless" else f", range {in_words(self.span)} {unit}"
-        return f"{self.type}{axis}{span}"
 
 
 class Parts(Check):
@@ -116,7 +89,7 @@ class Joints(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         found = self.joint.found(subject)
-        others = [f"{joint.name} {joint.type} {_numbers(subject.axis(joint))} {subject.span(joint):.4g}" for joint in _moving(subject)]
+        others = [f"{joint.name} {joint.type} {in_numbers(subject.axis(joint))} {subject.span(joint):.4g}" for joint in _moving(subject)]
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({'; '.join(others[:8]) or 'no joint moves'})"
 
 
@@ -524,7 +497,13 @@ AnyCheck = Annotated[
     | Extent
     | Threads
     | Links
-    | Square,
+    | Square
+    | PutTogether
+    | Effort
+    | Carries
+    | Folds
+    | Passes
+    | Stack,
     Field(discriminator="kind"),
 ]
 
@@ -558,10 +537,6 @@ def _moved_bodies(subject: Subject, joint: Joint) -> list[str]:
 
 def _moving(subject: Subject) -> list[Joint]:
     return [joint for joint in subject.assembly.joints if joint.type is not JointType.FIXED]
-
-
-def _parallel(a: FloatArray, b: FloatArray) -> bool:
-    return abs(float(a @ b)) >= math.cos(AXIS_RAD) * float(np.linalg.norm(a) * np.linalg.norm(b))
 
 
 def _stroke(subject: Subject, driver: str, steps: int = STROKE) -> FloatArray:
@@ -609,7 +584,7 @@ def _alike(rows: list[tuple[FloatArray, FloatArray | None, Joint]]) -> list[list
     for axis, point, joint in rows:
         for other, foot, members in groups:
             beside = 0.0 if point is None or foot is None else float(np.linalg.norm(np.cross(point - foot, other)))
-            if _parallel(axis, other) and beside <= SAME_LINE_MM:
+            if parallel(axis, other) and beside <= SAME_LINE_MM:
                 members.append(joint)
                 break
         else:
@@ -665,10 +640,6 @@ def _ratio(subject: Subject, leader: Joint, follower: Joint) -> float | None:
 
 def _shaped(subject: Subject, joint: Joint) -> bool:
     return {joint.parent, joint.child} <= set(subject.shaped) - set(subject.scene.broken)
-
-
-def _numbers(vector: Any) -> str:
-    return "(" + ", ".join(f"{float(x):.3g}" for x in vector) + ")"
 
 
 def _by(sides: FloatArray) -> str:

@@ -20,7 +20,7 @@ from articad_bench.task import Task
 
 __all__ = ["CheckRow", "Number", "NumberRow", "Sentences", "edit_text", "holds", "numbers_of", "sentences", "stage_of", "texts_of"]
 
-Unit = Literal["mm", "deg", "kg", "ml", "%", "turn", "count"]
+Unit = Literal["mm", "deg", "kg", "ml", "%", "turn", "N", "N m", "N/mm²", "count"]
 Value = tuple[Unit, float, float]
 """A number of a check: its unit and bounds."""
 
@@ -42,6 +42,9 @@ _UNITS: Final[dict[str, tuple[Unit, float]]] = {
     "per cent": ("%", 1.0),
     "turn": ("turn", 1.0),
     "turns": ("turn", 1.0),
+    "N": ("N", 1.0),
+    "N m": ("N m", 1.0),
+    "N/mm²": ("N/mm²", 1.0),
 }
 _ONES: Final = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 _TEENS: Final = ("ten", "eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen")
@@ -337,6 +340,25 @@ def _ratio_values(row: Any) -> list[Value]:
     return [(unit, (1 - EXACT) * value, (1 + EXACT) * value) for value in ratios for unit in units]
 
 
+def _exact(lengths: Iterable[float | None]) -> list[Value]:
+    return [("mm", length, length) for length in lengths if length is not None]
+
+
+def _carried_values(row: Any) -> list[Value]:
+    """Return the load, the height, the sides and the sag of a board, and what its material bears."""
+    material: list[Value] = [("N/mm²", row.stress, row.stress), ("N/mm²", row.modulus, row.modulus)]
+    sides = _exact(side for side in (*row.top, row.sag) if side)
+    return [("kg", row.kg, row.kg), ("mm", *row.level), *sides, *material]
+
+
+def _stack_values(row: Any) -> list[Value]:
+    """Return what may be left of a stack, the lengths of its pieces and how far they may be off, and the ranges of its joints."""
+    found = [*_bounds(row), *(("mm", *piece.mm) for piece in row.pieces)]
+    offs = [*(piece.off for piece in row.pieces), *([row.between] if isinstance(row.between, tuple) else [])]
+    found += _exact(abs(end) for off in offs for end in off if end)
+    return [*found, *(value for play in row.plays for value in _joint_values(play.joint))]
+
+
 _MEASURES: Final[dict[str, Callable[[Any], list[Value]]]] = {
     "size": lambda row: _lengths(row, row.mm),
     "part_size": lambda row: _lengths(row, row.mm),
@@ -349,6 +371,11 @@ _MEASURES: Final[dict[str, Callable[[Any], list[Value]]]] = {
     "mass": lambda row: [("kg", *row.kg)],
     "holds": lambda row: [("ml", *row.ml)],
     "stands": lambda row: [("deg", row.degrees, row.degrees)],
+    "effort": lambda row: [(row.unit, *row.most), *([("kg", row.load, row.load)] if row.load else [])],
+    "carries": _carried_values,
+    "folds": lambda row: _exact((*row.into, *row.opens)),
+    "passes": lambda row: _exact(row.opening),
+    "stack": _stack_values,
 }
 
 

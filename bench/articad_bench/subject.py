@@ -10,14 +10,17 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+from scipy.spatial import ConvexHull, QhullError
 
 from articad.arrays import FloatArray
 from articad.assembly import Assembly, Poses
+from articad.certificates.fits import FitReport, check_fits, followed
 from articad.connectors import SE3
 from articad.errors import ArticadError
 from articad.interference.check import check_scene
 from articad.interference.report import Checks
 from articad.interference.scene import Scene
+from articad.interference.surface import surface_distance, whole_surface
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.motion import FeasibleRange
 from articad_bench.solids import boxes_by_faces
@@ -61,6 +64,11 @@ class Subject:
         return check_scene(self.scene, self.assembly.at(), ground=self.assembly.ground)
 
     @cached_property
+    def declared(self) -> FitReport:
+        """Declared fits, compared with measurements at rest and over the motion of their joints."""
+        return check_fits(self.scene, followed(self.assembly.mechanism))
+
+    @cached_property
     def scene(self) -> Scene:
         """Bodies and relations, for measurements of interference."""
         return self.assembly.scene()
@@ -89,6 +97,35 @@ class Subject:
         """Return a part's sides in its own frame, ascending `(3,)` [mm]."""
         mesh = self.assembly.parts[part].mesh
         return np.sort(np.ptp(mesh.vertices, axis=0)) if mesh is not None else np.zeros(3)
+
+    def apart(self, a: str, b: str) -> float:
+        """Return the distance of the surfaces of two parts at rest [mm]."""
+        key = (a, b) if a < b else (b, a)
+        if key not in self._apart:
+            meshes = [self.assembly.parts[name].mesh for name in key]
+            surfaces = [whole_surface(mesh) for mesh in meshes if mesh is not None]
+            T = (self.rest[key[0]].inverse() @ self.rest[key[1]]).matrix
+            self._apart[key] = surface_distance(surfaces[0], surfaces[1], T) if len(surfaces) == len(key) else math.inf
+        return self._apart[key]
+
+    @cached_property
+    def _apart(self) -> dict[tuple[str, str], float]:
+        return {}
+
+    def hull(self, part: str) -> FloatArray:
+        """Return the corners of a part's convex hull in its own frame `(n, 3)` [mm]; all of its corners if it is flat."""
+        if part not in self._hulls:
+            mesh = self.assembly.parts[part].mesh
+            points = np.zeros((0, 3)) if mesh is None else mesh.vertices
+            try:
+                self._hulls[part] = points[ConvexHull(points).vertices] if len(points) else points
+            except QhullError:
+                self._hulls[part] = points
+        return self._hulls[part]
+
+    @cached_property
+    def _hulls(self) -> dict[str, FloatArray]:
+        return {}
 
     def boxes(self, part: str) -> FloatArray:
         """Return a part's sides at rest, and in the frames that its faces suggest; each row ascends `(n, 3)` [mm].

@@ -10,14 +10,20 @@ from typing import Final, Literal, NamedTuple
 
 from articad.kinematics.joints import JointType
 from articad_bench.checks import Joints, Loops
+from articad_bench.function_checks import PutTogether
+from articad_bench.stack_checks import Stack
 from articad_bench.task import Task
 
-Asked = Literal["motion", "loop", "cone"]
-"""What a product has: joints that move, a closed loop, a ball whose cone is limited and whose twist has a range of its own."""
+Asked = Literal["motion", "loop", "cone", "force", "fit"]
+"""What a product has: joints that move, a closed loop, a ball whose cone is limited and whose twist has a range of its own, parts that are pressed
+or snapped together, declared fits."""
 
 _MOTION: Final = frozenset(
-    {"freedoms", "joints", "loops", "ratio", "rise", "travel", "straight", "level", "turns", "links", "gap", "moves"}
+    {"freedoms", "joints", "effort", "folds", "loops", "ratio", "rise", "travel", "straight", "level", "turns", "links", "gap", "moves"}
 ) | {"made", "captive", "clear_in_motion", "certified", "simulates"}
+
+
+_EVERY: Final[tuple[Literal["urdf", "mjcf", "step"], ...]] = ("urdf", "mjcf", "step")
 
 
 class Unsaid(NamedTuple):
@@ -44,6 +50,14 @@ UNSAID: Final = (
         frozenset({"joints", "travel", "clear_in_motion", "certified"}),
         "MJCF limits the total angle of a ball, not cone and twist.",
     ),
+    *(
+        rule
+        for form in _EVERY
+        for rule in (
+            Unsaid(form, "force", frozenset({"put_together"}), f"{form.upper()} does not say what is pressed or snapped together."),
+            Unsaid(form, "fit", frozenset({"stack"}), f"{form.upper()} holds no fits."),
+        )
+    ),
     Unsaid("step", "motion", _MOTION | {"lead", "threads"}, "STEP holds no joints."),
 )
 
@@ -63,6 +77,10 @@ def asked_for(task: Task) -> set[Asked]:
             found.add("loop")
         if isinstance(check, Joints) and check.joint.type is JointType.BALL and check.joint.span not in {None, "endless"}:
             found.add("cone")
+        if isinstance(check, PutTogether) and check.force:
+            found.add("force")
+        if isinstance(check, Stack) and check.plays:
+            found.add("fit")
     return found
 
 

@@ -55,6 +55,11 @@ COSTLY: Final = {
     "certified": 0,
     "captive": 0,
     "simulates": 0,
+    "put_together": 0,
+    "effort": 0,
+    "carries": 20,
+    "folds": 20,
+    "stack": 20,
 }
 UNITS: Final = {"mm": "mm", "deg": "deg", "1": "count"}
 
@@ -263,7 +268,22 @@ def _near(value: float) -> float:
 # ---------------------------------------------------------------------- checks
 
 _ADAPTER: Final[TypeAdapter[Any]] = TypeAdapter(AnyCheck)
-_LENGTHS: Final = ("mm", "diameter", "pitch", "circle", "ratio", "off", "length", "by", "degrees")
+_LENGTHS: Final = (
+    "mm",
+    "diameter",
+    "pitch",
+    "circle",
+    "ratio",
+    "off",
+    "length",
+    "by",
+    "degrees",
+    "level",
+    "top",
+    "into",
+    "opens",
+    "opening",
+)
 _SPANS: Final = ("joint", "driver", "follower")
 
 

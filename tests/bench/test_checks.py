@@ -77,6 +77,24 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("toggle_clamp", {"kind": "threads"}),
     ("plate_motor_mount", {"kind": "square", "mm": 31}),
     ("peaucellier_board", {"kind": "links", "mm": 70, "number": [4, 4]}),
+    ("stool_step_two", {"kind": "put_together"}),
+    ("desk_lamp", {"kind": "effort", "joint": {"type": "revolute", "span": [55, 65]}, "most": [0.05, 5]}),
+    (
+        "stool_step_two",
+        {
+            "kind": "carries",
+            "kg": 150,
+            "level": [449, 451],
+            "top": [190, 390],
+            "number": [1, 1],
+            "stress": 12,
+            "modulus": 9000,
+            "anywhere": True,
+        },
+    ),
+    ("scissor_lift", {"kind": "folds", "into": [400, 400, 200]}),
+    ("wardrobe", {"kind": "passes", "opening": [620, 1930]}),
+    ("slider_crank", {"kind": "stack", "plays": [{"joint": {"type": "revolute"}, "times": 2}], "mm": [0.2, 0.5]}),
 ]
 
 

@@ -367,6 +367,34 @@ def _other_lead(_check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, joints=[replace(joint, lead=-2 * joint.lead) for joint in subject.assembly.joints]))
 
 
+def _locked(_check: Check, subject: Subject) -> Subject:
+    """A shell around the product that nothing gets into."""
+    low, high = subject.corners(subject.rest)
+    outer, inner = (box(*(high - low + 2 * reach)).transformed(SE3.from_translation((low + high) / 2)) for reach in (20.0, 10.0))
+    shell = merged([outer, TriMesh(inner.vertices, inner.triangles[:, ::-1])])
+    mesh = subject.assembly.parts[subject.assembly.ground].mesh
+    assert mesh is not None
+    return _with_mesh(subject, subject.assembly.ground, merged([mesh, shell.transformed(subject.rest[subject.assembly.ground].inverse())]))
+
+
+def _foil(_check: Check, subject: Subject) -> Subject:
+    """Every part is a hundredth as high, from its upper face."""
+    parts = []
+    for name, part in subject.assembly.parts.items():
+        if part.mesh is not None:
+            placed = part.mesh.transformed(subject.rest[name])
+            top = placed.bounds[1, 2]
+            vertices = placed.vertices * [1, 1, 0.01] + [0, 0, 0.99 * top]
+            part = shaped_as(part, TriMesh(vertices, placed.triangles).transformed(subject.rest[name].inverse()))  # noqa: PLW2901
+        parts.append(part)
+    return Subject(changed(subject.assembly, parts))
+
+
+def _undeclared(check: Check, subject: Subject) -> Subject:
+    """No fit is declared, and every piece is a thousand times as long."""
+    return Subject(changed(_larger(check, subject).assembly, fits={}))
+
+
 VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "parts": _bare,
     "freedoms": _welded,
@@ -407,4 +435,10 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "stands": _heavy_beside,
     "symmetric": _heavy_beside,
     "lead": _other_lead,
+    "put_together": _locked,
+    "effort": _larger,
+    "carries": _foil,
+    "folds": _larger,
+    "passes": _larger,
+    "stack": _undeclared,
 }

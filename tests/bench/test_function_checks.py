@@ -1,0 +1,358 @@
+"""Checks of function against other oracles: MuJoCo for efforts, the textbook for beams, known boxes, sums by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from articad.assembly import Assembly
+from articad.connectors import SE3
+from articad.export.mjcf import write_mjcf
+from articad.geometry import Part, TriMesh, box, cylinder, tube
+from articad.kinematics.joints import Coupling, Joint
+from articad.plan.resolve import Fit
+from articad_bench.function_checks import largest_effort, least_width
+from articad_bench.strength_checks import bending, level_tops, section
+from articad_bench.subject import Subject
+from tests.bench.test_cheats import made, solid
+from tests.bench.test_checks import form
+from tests.kinematics.linkages import at, joint
+
+STEEL = 7850.0
+LEVEL = SE3.rot_x(-math.pi / 2)  # z along +y
+
+
+def placed(mesh: TriMesh, x: float, y: float, z: float) -> TriMesh:
+    return mesh.transformed(SE3.trans(x, y, z))
+
+
+def of(
+    *bodies: tuple[str, TriMesh], joints: list[Joint], couplings: tuple[Coupling, ...] = (), fits: dict[str, Fit] | None = None
+) -> Assembly:
+    parts = [Part.from_mesh(name, mesh, density=STEEL) for name, mesh in bodies]
+    return Assembly.from_parts("made", parts=parts, joints=joints, ground=bodies[0][0], couplings=couplings, fits=fits)
+
+
+def fixed(a: str, b: str) -> Joint:
+    return joint(f"{a}_{b}", "fixed", (a, at(0)), (b, at(0)))
+
+
+# ---------------------------------------------------------------------- effort
+
+
+def arm() -> Assembly:
+    """A bar of 400 mm on a level pin at its end, turning from level by 80 degrees up, on a post."""
+    bodies = ("post", placed(box(40, 40, 200), 0, 60, -100)), ("bar", placed(box(400, 20, 20), 200, 0, 0))
+    return of(*bodies, joints=[joint("pin", "revolute", ("post", LEVEL), ("bar", LEVEL), limits=[(-1.4, 0.0)])])
+
+
+def test_the_effort_of_an_arm_is_weight_times_lever() -> None:
+    assembly = arm()
+    weight = STEEL * 0.4 * 0.02 * 0.02 * 9.81
+
+    assert largest_effort(Subject(assembly), assembly.joints[0]) == pytest.approx(weight * 0.2, rel=1e-3)
+    loaded = largest_effort(Subject(assembly), assembly.joints[0], 3.0)
+    assert loaded == pytest.approx(weight * 0.2 + 3 * 9.81 * 0.2, rel=5e-3)
+
+
+def two_arms() -> Assembly:
+    bodies = (
+        ("post", placed(box(40, 40, 200), 0, 60, -100)),
+        ("lower", placed(box(300, 20, 20), 150, 0, 0)),
+        ("upper", placed(box(200, 15, 15), 100, 25, 0)),
+    )
+    shoulder = joint("shoulder", "revolute", ("post", LEVEL), ("lower", LEVEL), limits=[(-1.2, 0.3)])
+    elbow = joint("elbow", "revolute", ("lower", at(300) @ LEVEL), ("upper", LEVEL), limits=[(-0.5, 1.5)])
+    return of(*bodies, joints=[shoulder, elbow])
+
+
+def test_the_efforts_of_a_chain_are_those_of_mujoco(tmp_path: Any) -> None:
+    """MuJoCo's inverse dynamics at rest is the effort against gravity; its largest over the same poses, the other joint at rest and at its ends."""
+    assembly = two_arms()
+    (file,) = (path for path in write_mjcf(assembly).write(tmp_path) if path.suffix == ".xml")
+    model = mujoco.MjModel.from_xml_path(str(file))
+    data = mujoco.MjData(model)
+    columns = {name: int(model.jnt_qposadr[mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)]) for name in ("shoulder", "elbow")}
+    limits = {row.name: (row.limits.lower[0], row.limits.upper[0]) for row in assembly.joints}
+
+    def largest(name: str, other: str) -> float:
+        found = 0.0
+        for beside in (0.0, *limits[other]):
+            for value in np.linspace(*limits[name], 200):
+                data.qpos[columns[name]], data.qpos[columns[other]] = value, beside
+                data.qvel[:], data.qacc[:] = 0, 0
+                mujoco.mj_inverse(model, data)
+                found = max(found, abs(float(data.qfrc_inverse[columns[name]])))
+        return found
+
+    for row, other in zip(assembly.joints, ("elbow", "shoulder"), strict=True):
+        assert largest_effort(Subject(assembly), row) == pytest.approx(largest(row.name, other), rel=2e-3)
+
+
+def screw_table() -> Assembly:
+    """A table of 10 kg or so on a spindle of 5 mm lead, turned by a crank of 120 mm."""
+    bodies = ("base", box(100, 100, 10)), ("table", placed(box(400, 300, 10), 0, 0, 200)), ("crank", placed(box(120, 10, 10), 60, 0, 40))
+    lift = joint("lift", "slider", ("base", at(0)), ("table", at(0)), limits=[(0.0, 100.0)])
+    turn = joint("turn", "revolute", ("base", at(0)), ("crank", at(0)), limits=[(0.0, 40 * math.pi)], driver=True)
+    return of(*bodies, joints=[lift, turn], couplings=(Coupling("thread", "linear", "turn", "lift", 5 / (2 * math.pi)),))
+
+
+def test_a_hand_at_a_crank_feels_weight_times_lead_by_the_way_round() -> None:
+    assembly = screw_table()
+    weight = (STEEL * 0.4 * 0.3 * 0.01 + 50) * 9.81
+    torque = weight * 0.005 / (2 * math.pi)
+    reach = math.hypot(0.12, 0.005)
+
+    lift, turn = assembly.joints
+    assert largest_effort(Subject(assembly), lift, 50.0) == pytest.approx(weight, rel=1e-3)
+    assert largest_effort(Subject(assembly), turn, 50.0) == pytest.approx(torque, rel=1e-3)
+    row: dict[str, Any] = {"kind": "effort", "joint": {"type": "revolute"}, "load": 50, "by_hand": True}
+    hand = torque / reach
+    assert form(row | {"most": [0.99 * hand, 1.01 * hand]}).judge(Subject(assembly)).ok
+    assert not form(row | {"most": [0, 0.98 * hand]}).judge(Subject(assembly)).ok
+
+
+# ---------------------------------------------------------------------- carries
+
+
+KG, E, B, H, L = 60.0, 9000.0, 200.0, 20.0, 800.0
+FORCE = KG * 9.81
+MOMENT = B * H**3 / 12
+
+
+def on(*supports: tuple[float, float], both: bool, length: float = L) -> Subject:
+    """A board that lies on blocks from one place to another along it, fixed to them or not; a plate below is the ground."""
+    ground = placed(box(length + 100, 300, 10), length / 2, 0, -105)
+    blocks = [(f"block{i}", placed(box(b - a, B, 90), (a + b) / 2, 0, -55)) for i, (a, b) in enumerate(supports)]
+    board = placed(box(length, B, H), length / 2, 0, H / 2 - 10)
+    joints = [fixed("ground", name) for name, _ in blocks]
+    joints.append(fixed("ground", "board") if both else joint("loose", "slider", ("ground", at(0)), ("board", at(0)), limits=[(0.0, 50.0)]))
+    return Subject(of(("ground", ground), *blocks, ("board", board), joints=joints))
+
+
+def bent(subject: Subject, **options: Any) -> tuple[float, float] | None:
+    (top,) = level_tops(subject, "board")
+    found = bending(subject, top, KG, E, **options)
+    return None if found is None else (found.stress, found.sag)
+
+
+def stress_of(moment: float) -> float:
+    return moment * (H / 2) / MOMENT
+
+
+def test_a_board_that_lies_on_two_blocks_bends_between_their_inner_edges() -> None:
+    """Simply supported with overhangs c beyond a span l: M = w l²/8 − w c²/2, and at the ends of the blocks w c²/2."""
+    span, c = 600.0, 100.0
+    w = FORCE / L
+
+    found = bent(on((0, 100), (700, 800), both=False))
+
+    assert found is not None
+    stress, sag = found
+    assert stress == pytest.approx(stress_of(w * span**2 / 8 - w * c**2 / 2), rel=2e-3)
+    middle = w * span**2 / (384 * E * MOMENT) * (5 * span**2 - 24 * c**2)
+    assert sag == pytest.approx(middle, rel=2e-3)
+
+
+def test_a_board_that_is_fixed_to_two_blocks_is_a_beam_with_fixed_ends() -> None:
+    span, w = 600.0, FORCE / L
+
+    found = bent(on((0, 100), (700, 800), both=True))
+
+    assert found is not None
+    assert found[0] == pytest.approx(stress_of(w * span**2 / 12), rel=2e-3)
+    assert found[1] == pytest.approx(w * span**4 / (384 * E * MOMENT), rel=2e-3)
+
+
+def test_a_board_that_is_fixed_along_a_short_way_may_turn_there() -> None:
+    span, w = 760.0, FORCE / L  # from 20 to 780, with 20 mm beyond
+
+    found = bent(on((0, 20), (780, 800), both=True))
+
+    assert found is not None
+    assert found[0] == pytest.approx(stress_of(w * span**2 / 8 - w * 20**2 / 2), rel=2e-3)
+
+
+def test_a_board_on_one_bracket_is_a_cantilever_and_one_that_lies_there_falls() -> None:
+    """The load anywhere: at the end of the board."""
+    found = bent(on((0, 200), both=True), anywhere=True)
+
+    assert found is not None
+    assert found[0] == pytest.approx(stress_of(FORCE * 600), rel=1e-2)
+    assert found[1] == pytest.approx(FORCE * 600**3 / (3 * E * MOMENT), rel=2e-3)
+    assert bent(on((0, 200), both=False), anywhere=True) is None
+    assert bent(on((0, 200), both=False)) is None  # the middle of the load is beside the block
+
+
+def test_a_load_beyond_what_a_board_lies_on_tips_it() -> None:
+    assert bent(on((200, 300), (500, 600), both=False)) is not None
+    assert bent(on((200, 300), (500, 600), both=False), anywhere=True) is None
+
+
+def test_what_hangs_on_a_board_does_not_carry_it() -> None:
+    ground, posts = placed(box(900, 300, 10), 400, 0, -105), [("post0", placed(box(100, B, 90), 50, 0, -55))]
+    board, hung = placed(box(L, B, H), 400, 0, 0), placed(box(100, B, 50), 750, 0, -35)
+    joints = [fixed("ground", "post0"), fixed("post0", "board"), fixed("board", "hung")]
+    subject = Subject(of(("ground", ground), *posts, ("board", board), ("hung", hung), joints=joints))
+
+    found = bent(subject)
+    assert found is not None
+    assert found[0] == pytest.approx(stress_of(FORCE / L * 700**2 / 2), rel=2e-3)
+
+
+def test_the_section_of_a_board_is_that_of_its_shape() -> None:
+    flat = section(box(500, 60, 30), np.array([1.0, 0, 0]), 7.0)
+    assert flat == pytest.approx((60 * 30**3 / 12, 15))
+    pipe = section(tube(10, 12, 400).transformed(SE3.rot_y(math.pi / 2)), np.array([1.0, 0, 0]), 3.0)
+    assert pipe == pytest.approx((math.pi / 4 * (12**4 - 10**4), 12), rel=5e-3)
+
+
+def test_a_board_is_meant_by_its_height_and_size() -> None:
+    subject = on((0, 100), (700, 800), both=True)
+    row: dict[str, Any] = {"kind": "carries", "kg": KG, "stress": 10, "modulus": E, "number": [1, 1]}
+    assert form(row | {"level": [119, 121], "top": [180, 780]}).judge(subject).ok
+    assert not form(row | {"level": [119, 121], "top": [180, 820]}).judge(subject).ok
+    assert not form(row | {"level": [100, 118]}).judge(subject).ok
+    assert not form(row | {"level": [119, 121], "kg": 40 * KG}).judge(subject).ok
+    assert not form(row | {"level": [119, 121], "sag": 0.1}).judge(subject).ok
+
+
+# ---------------------------------------------------------------------- folds and passes
+
+
+def flap(*, blocked: bool = False) -> Assembly:
+    """Two leaves of 300 x 200 x 10 mm on one pin along y: flat they are 600 mm long, folded 300."""
+    a, b = placed(box(299, 200, 10), -149.5, 0, -5), placed(box(299, 200, 10), 149.5, 0, -5)
+    bodies = [("a", a), ("b", b), *([("stop", placed(box(10, 200, 60), -60, 0, 30))] if blocked else [])]
+    joints = [joint("pin", "revolute", ("a", LEVEL), ("b", LEVEL), limits=[(-math.pi, 0.0)])]
+    return of(*bodies, joints=joints + ([fixed("a", "stop")] if blocked else []))
+
+
+def test_two_leaves_fold_into_the_box_of_one() -> None:
+    row: dict[str, Any] = {"kind": "folds", "opens": [10, 200, 590]}
+    assert form(row | {"into": [20, 200, 310]}).judge(Subject(flap())).ok
+    assert form(row | {"into": [310, 20, 200]}).judge(Subject(flap())).ok
+    assert not form(row | {"into": [19, 200, 310]}).judge(Subject(flap())).ok
+    assert not form(row | {"into": [20, 200, 310], "opens": [None, None, 600]}).judge(Subject(flap())).ok
+
+
+def test_leaves_do_not_fold_through_what_is_in_the_way() -> None:
+    judged = form({"kind": "folds", "into": [70, 200, 310]}).judge(Subject(flap(blocked=True)))
+
+    assert not judged.ok
+    assert "collide" in judged.measured
+
+
+def test_a_box_passes_an_opening_by_its_narrow_side_however_it_is_turned() -> None:
+    turned = box(900, 500, 300).transformed(SE3.rot_z(0.7))
+    subject = Subject(of(("block", turned), joints=[]))
+    assert form({"kind": "passes", "opening": [500, 300]}).judge(subject).ok
+    assert not form({"kind": "passes", "opening": [499, 300]}).judge(subject).ok
+    assert not form({"kind": "passes", "opening": [500, 299]}).judge(subject).ok
+    straight = Subject(of(("block", box(900, 500, 300)), joints=[]))
+    assert form({"kind": "passes", "opening": [500, 300], "along": "x"}).judge(straight).ok
+    assert not form({"kind": "passes", "opening": [500, 300], "along": "y"}).judge(straight).ok
+
+
+def test_folded_leaves_pass_where_open_ones_do_not() -> None:
+    tall = of(*[(name, part.mesh) for name, part in flap().parts.items() if part.mesh is not None], joints=list(flap().joints))
+    row: dict[str, Any] = {"kind": "passes", "opening": [310, 200], "along": "y"}
+    assert not form(row).judge(Subject(tall)).ok
+    assert form(row | {"folded": True}).judge(Subject(tall)).ok
+
+
+def test_the_width_of_a_triangle_is_its_least_height() -> None:
+    assert least_width(np.array([[0.0, 0], [3, 0], [0, 4]])) == pytest.approx(12 / 5)
+
+
+# ---------------------------------------------------------------------- put together
+
+
+def pinned(head: bool) -> Assembly:
+    """A pin in a plate; a head on both sides of the plate keeps it from going in."""
+    plate = tube(5.2, 20, 10)
+    bodies = [
+        ("plate", plate),
+        ("pin", cylinder(5, 40)),
+        ("cap", placed(tube(5.0, 9, 4), 0, 0, 8)),
+        ("foot", placed(tube(5.0, 9, 4), 0, 0, -8)),
+    ]
+    joints = [joint("turn", "revolute", ("plate", at(0)), ("pin", at(0))), fixed("pin", "cap"), fixed("pin", "foot")]
+    if head:
+        whole = made(
+            "Add", *(solid(placed(mesh, 0, 0, z)) for mesh, z in ((cylinder(5, 40), 0), (cylinder(9, 4), 8), (cylinder(9, 4), -8)))
+        )
+        bodies, joints = [("plate", plate), ("pin", whole)], joints[:1]
+    return of(*bodies, joints=joints)
+
+
+def test_a_pin_with_heads_at_both_ends_is_put_together_only_if_a_head_is_a_part() -> None:
+    row = {"kind": "put_together"}
+    assert form(row).judge(Subject(pinned(head=False))).ok
+    assert not form(row).judge(Subject(pinned(head=True))).ok
+
+
+def test_force_and_what_is_bought_as_one_are_counted() -> None:
+    snapped = pinned(head=True)
+    for fastening in ("snap", "purchased"):
+        joints = [replace(row, fastening=fastening) for row in snapped.joints]
+        subject = Subject(Assembly.from_parts("made", parts=snapped.parts.values(), joints=joints, ground="plate"))
+        assert not form({"kind": "put_together"}).judge(subject).ok
+        assert form({"kind": "put_together", "force": 1}).judge(subject).ok
+
+
+# ---------------------------------------------------------------------- stack
+
+
+def stacked(*lengths: float, between: float) -> Subject:
+    """Rings on a shaft between a shoulder and a cap, each on its own."""
+    bodies = [
+        ("shaft", cylinder(5, between + 20).transformed(SE3.trans(0, 0, between / 2))),
+        ("shoulder", placed(tube(5, 10, 5), 0, 0, -2.5)),
+    ]
+    z = 0.0
+    for i, length in enumerate(lengths):
+        bodies.append((f"ring{i}", placed(tube(5.1, 9, length), 0, 0, z + length / 2)))
+        z += length
+    bodies.append(("cap", placed(tube(5, 10, 2), 0, 0, between + 1)))
+    joints = [fixed("shaft", name) for name, _ in bodies[1:]]
+    return Subject(of(*bodies, joints=joints))
+
+
+def test_what_is_left_of_a_stack_is_the_sum_by_hand() -> None:
+    """Bearings of 8 −0.12 mm, a spacer of 20 ± 0.1 mm (class f), a seat of 36.2 ± 0.05 mm: 0.2 − 0.1 − 0.05 to 0.2 + 0.24 + 0.1 + 0.05."""
+    bearing: dict[str, Any] = {"mm": [8, 8], "off": [-0.12, 0]}
+    row: dict[str, Any] = {"kind": "stack", "pieces": [bearing, {"mm": [18, 22], "general": "f"}, bearing], "between": [-0.05, 0.05]}
+    subject = stacked(8, 20, 8, between=36.2)
+
+    assert form(row | {"mm": [0.05, 0.59]}).judge(subject).ok
+    assert not form(row | {"mm": [0.051, 0.59]}).judge(subject).ok
+    assert not form(row | {"mm": [0.05, 0.589]}).judge(subject).ok
+    assert not form(row | {"mm": [0.05, 0.59]}).judge(stacked(8, 20, 8, between=36)).ok  # sizes that fit without tolerances
+    assert not form(row | {"mm": [0, 9], "pieces": [bearing, {"mm": [30, 40]}, bearing]}).judge(subject).ok
+
+
+def test_pieces_are_found_from_either_end() -> None:
+    row: dict[str, Any] = {"kind": "stack", "mm": [0.1, 0.1]}
+    for pieces in ([{"mm": [8, 8]}, {"mm": [20, 20]}], [{"mm": [20, 20]}, {"mm": [8, 8]}]):
+        assert form(row | {"pieces": pieces}).judge(stacked(8, 20, between=28.1)).ok
+
+
+def test_the_play_of_a_fit_is_that_of_its_limits_in_the_table() -> None:
+    """10 H7/g6: a hole of 10 to 10.015 mm, a pin of 9.986 to 9.995 mm, so half of 0.005 to 0.029 mm."""
+    bodies = ("plate", tube(5.005, 20, 10, 256)), ("pin", cylinder(4.996, 40, 256))
+    turn = [joint("turn", "revolute", ("plate", at(0)), ("pin", at(0)))]
+    row: dict[str, Any] = {"kind": "stack", "plays": [{"joint": {"type": "revolute"}, "times": 2}]}
+    subject = Subject(of(*bodies, joints=turn, fits={"turn": Fit.named("H7/g6", 10)}))
+
+    assert form(row | {"mm": [0.005, 0.029]}).judge(subject).ok
+    assert not form(row | {"mm": [0.006, 0.029]}).judge(subject).ok
+    assert not form(row | {"mm": [0.005, 0.028]}).judge(subject).ok
+    assert not form(row | {"mm": [0, 9]}).judge(Subject(of(*bodies, joints=turn))).ok
+    loose = ("plate", tube(5.2, 20, 10)), bodies[1]
+    assert not form(row | {"mm": [0, 9]}).judge(Subject(of(*loose, joints=turn, fits={"turn": Fit.named("H7/g6", 10)}))).ok
