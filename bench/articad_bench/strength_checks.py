@@ -18,12 +18,15 @@ from articad_bench.subject import Subject
 
 G: Final = 9.81  # m/s²
 FLOOR_MM: Final = 0.2  # a part so near the ground stands on it
-TOUCH_MM: Final = 0.1  # parts so near each other touch
+TOUCH_MM: Final = 0.3  # parts so near each other touch
 PLAY_MM: Final = 0.6  # as far as a pin may be from its bore
 UP: Final = 0.999  # cosine of the lean of a level surface
 LEVEL_MM: Final = 0.05  # triangles within this height are one surface
 STATIONS: Final = 60  # along a beam
-CLAMPED: Final = 2.0  # times the thickness of a board: what is fixed to it along more than this does not let it turn
+STRIP: Final = 1 / 3  # of the width of a board: its middle, which what lies all round it does not carry both ways
+TURNS: Final = 0.5  # cosine of the angle of a pin to the line about which a board bends, from which it lets the board turn
+CLAMPED: Final = 2.0  # times the thickness of a board: what is fixed to it along more than this, or half of it, does not let it turn
+_PINS: Final = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.BALL, JointType.UNIVERSAL})
 SINGULAR: Final = 1e12  # condition of a beam that nothing holds
 
 
@@ -56,8 +59,9 @@ class Carries(Check):
 
     A board is a part with a level top of at least these sides. Its section is measured all along it. Parts that reach the ground, or the product's fixed
     part, without this board carry it where they touch it: what only touches it from below pushes, what is fixed to it holds both ways, and
-    does not let it turn where it reaches along twice the thickness of the board, and a pin lets it turn. Both directions of the board are looked at,
-    and the worse one counts. The load lies evenly on the whole board, or on any one place of it.
+    does not let it turn where it reaches along twice the thickness of the board, or half of it, and a pin lets it turn about its axis. Both directions of the
+    board are looked at, and the worse one counts; what lies all round a board carries the middle third of it in the better direction. The load
+    lies evenly on the whole board, or on any one place of it.
 
     Attributes:
         kg: Load on each board.
@@ -161,15 +165,22 @@ def bending(subject: Subject, top: Top, kg: float, modulus: float, *, anywhere: 
     """
     carriers = _carriers(subject, top.part)
     mesh = _placed(subject, top.part)
-    found = []
-    for way in top.ways:
-        axis = np.array([way[0], way[1], 0.0])
-        supports = [row for name in carriers if (row := _support(subject, mesh, top.part, name, axis)) is not None]
-        bent = _beam(mesh, axis, supports, kg * G, modulus, anywhere=anywhere)
-        if bent is None:
-            return None
-        found.append(bent)
-    return Bent(max(bent.stress for bent in found), max(bent.sag for bent in found))
+    whole: list[Bent | None] = []
+    strips: list[Bent | None] = []
+    for way, across in (top.ways, top.ways[::-1]):
+        axis, beside = (np.append(each, 0.0) for each in (way, across))
+        ends = mesh.vertices @ beside
+        middle, half = float(ends.min() + ends.max()) / 2, STRIP * float(np.ptp(ends)) / 2
+        for limits in (None, (beside, middle - half, middle + half)):
+            supports = [row for name in carriers for row in _supports(subject, top.part, name, axis, limits)]
+            bent = _beam(mesh, axis, supports, kg * G, modulus, anywhere=anywhere)
+            (whole if limits is None else strips).append(bent)
+    if None in whole:
+        return None
+    worse = [bent for bent in whole if bent is not None]
+    if held := [bent for bent in strips if bent is not None]:
+        worse.append(min(held))
+    return Bent(max(bent.stress for bent in worse), max(bent.sag for bent in worse))
 
 
 # ---------------------------------------------------------------------- what carries a board
@@ -224,55 +235,71 @@ def _carriers(subject: Subject, board: str) -> list[str]:
     return [name for name in subject.shaped if name in beside & reached]
 
 
-def _support(subject: Subject, board: TriMesh, name: str, carrier: str, axis: FloatArray) -> Support | None:
-    """Return where along an axis a part carries a board; None if it does not reach it from below, or is not held to it."""
+def _supports(subject: Subject, name: str, carrier: str, axis: FloatArray, strip: tuple[FloatArray, float, float] | None) -> list[Support]:
+    """Return where along an axis a part carries a board: within a strip of it, beside which nothing counts, or anywhere across it."""
+    board = _placed(subject, name)
     fixed = subject.rigid[name] == subject.rigid[carrier]
     joints = [j for j in subject.assembly.joints if {j.parent, j.child} == {name, carrier} and j.type is not JointType.FIXED]
     low, high = board.bounds
-    grown = np.array([low, high]) + np.array([[-1.0], [1.0]]) * (TOUCH_MM if fixed else PLAY_MM if joints else TOUCH_MM)
-    if not fixed and not joints:  # it only pushes
-        grown[1, 2] = low[2] + TOUCH_MM
-    points = _clipped(_placed(subject, carrier), grown)
-    if not len(points):
-        return None
+    near = PLAY_MM if joints and not fixed else TOUCH_MM
+    top = high[2] + near if fixed or joints else low[2] + near  # else it only pushes
+    walls = [(np.eye(3)[i], low[i] - near, high[i] + near) for i in range(2)] + [(np.eye(3)[2], low[2] - near, top)]
     ends = board.vertices @ axis
     start, end = float(ends.min()), float(ends.max())
-    along = np.clip(points @ axis, start, end) - start
-    span = Support(float(along.min()), float(along.max()), fixed or bool(joints))
-    if not span.both_ways:
-        return span
-    middle = (end - start) / 2
-    nearest = min(max(middle, span.low), span.high)
+    spans = _merged(
+        [
+            np.clip(points @ axis, start, end) - start
+            for points in _clipped(_placed(subject, carrier), [*walls, *([strip] if strip else [])])
+        ]
+    )
     if fixed:
-        clamps = span.high - span.low >= CLAMPED * float(high[2] - low[2])
-        return span if clamps else Support(nearest, nearest, both_ways=True)
-    about = [subject.axis(joint) for joint in joints]
-    if all(abs(float(way @ axis)) > UP for way in about):  # it turns about the beam's own line
-        return span
-    pin = subject.rest[joints[0].parent] @ joints[0].T_parent_connector
-    at = float(np.clip(pin.translation @ axis, start, end)) - start
-    return Support(at, at, both_ways=True)
+        middle, least = (end - start) / 2, min(CLAMPED * float(high[2] - low[2]), (end - start) / 2)
+        points = [min(max(middle, a), b) for a, b in spans]
+        return [
+            Support(a, b, both_ways=True) if b - a >= least else Support(at, at, both_ways=True)
+            for (a, b), at in zip(spans, points, strict=True)
+        ]
+    if joints and spans:
+        beside = np.cross([0.0, 0.0, 1.0], axis)
+        pins = [joint for joint in joints if joint.type in _PINS and abs(float(subject.axis(joint) @ beside)) > TURNS]
+        places = [subject.rest[pin.parent] @ pin.T_parent_connector for pin in pins]
+        turning = [float(np.clip(place.translation @ axis, start, end)) - start for place in places]
+        return [Support(at, at, both_ways=True) for at in turning] or [Support(a, b, both_ways=True) for a, b in spans]
+    return [Support(a, b, both_ways=False) for a, b in spans]
 
 
-def _clipped(mesh: TriMesh, bounds: FloatArray) -> FloatArray:
-    """Return corners of what of a surface lies within a box `(n, 3)` [mm]."""
+def _merged(rows: Sequence[FloatArray]) -> list[tuple[float, float]]:
+    """Return the stretches that pieces of a surface cover together, from their values along an axis."""
+    found: list[tuple[float, float]] = []
+    for low, high in sorted((float(row.min()), float(row.max())) for row in rows):
+        if found and low <= found[-1][1] + TOUCH_MM:
+            found[-1] = found[-1][0], max(high, found[-1][1])
+        else:
+            found.append((low, high))
+    return found
+
+
+def _clipped(mesh: TriMesh, walls: Sequence[tuple[FloatArray, float, float]]) -> list[FloatArray]:
+    """Return the corners of what of each triangle lies between pairs of planes, each given by its normal and two distances, `(n, 3)` [mm]."""
     corners = mesh.vertices[mesh.triangles]
-    near = ((corners.min(axis=1) <= bounds[1]) & (corners.max(axis=1) >= bounds[0])).all(axis=1)
+    for normal, low, high in walls:
+        along = corners @ normal
+        corners = corners[(along.min(axis=1) <= high) & (along.max(axis=1) >= low)]
     found = []
-    for triangle in corners[near]:
+    for triangle in corners:
         polygon = list(triangle)
-        for axis in range(3):
-            for limit, sign in ((bounds[0, axis], 1.0), (bounds[1, axis], -1.0)):
-                polygon = _cut(polygon, axis, limit, sign)
-        found += polygon
-    return np.array(found).reshape(-1, 3)
+        for normal, low, high in walls:
+            polygon = _cut(_cut(polygon, normal, low), -normal, -high)
+        if polygon:
+            found.append(np.array(polygon))
+    return found
 
 
-def _cut(polygon: Sequence[FloatArray], axis: int, limit: float, sign: float) -> list[FloatArray]:
-    """Return the piece of a polygon on one side of a plane across an axis."""
+def _cut(polygon: Sequence[FloatArray], normal: FloatArray, limit: float) -> list[FloatArray]:
+    """Return the piece of a polygon beyond a plane."""
     kept = []
     for a, b in zip(polygon, [*polygon[1:], *polygon[:1]], strict=True):
-        before, after = sign * (a[axis] - limit), sign * (b[axis] - limit)
+        before, after = float(normal @ a) - limit, float(normal @ b) - limit
         if before >= 0:
             kept.append(a)
         if before * after < 0:

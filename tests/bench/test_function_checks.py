@@ -194,6 +194,30 @@ def test_a_load_beyond_what_a_board_lies_on_tips_it() -> None:
     assert bent(on((200, 300), (500, 600), both=False), anywhere=True) is None
 
 
+def test_a_board_on_a_frame_bends_across_its_middle() -> None:
+    """Blocks all round a board of 800 x 200 mm: the middle is a beam across, from block to block; a pin that is upright does not let it turn."""
+    ground = placed(box(1000, 400, 10), 400, 0, -105)
+    rails = [("front", placed(box(L, 20, 90), 400, -90, -55)), ("back", placed(box(L, 20, 90), 400, 90, -55))]
+    ends = [("left", placed(box(20, 160, 90), 10, 0, -55)), ("right", placed(box(20, 160, 90), 790, 0, -55))]
+    joints = [fixed("ground", name) for name, _ in (*rails, *ends)]
+    joints.append(joint("loose", "slider", ("ground", at(0)), ("board", at(0)), limits=[(0.0, 50.0)]))
+    found = bent(Subject(of(("ground", ground), *rails, *ends, ("board", placed(box(L, B, H), 400, 0, 0)), joints=joints)))
+
+    assert found is not None
+    w = FORCE / B
+    assert found[0] == pytest.approx((w * 160**2 / 8 - w * 20**2 / 2) * (H / 2) / (L * H**3 / 12), rel=5e-3)
+
+
+@pytest.mark.parametrize(("turn", "held"), [(SE3.identity(), True), (SE3.rot_y(math.pi / 2), False), (SE3.rot_x(math.pi / 2), False)])
+def test_a_pin_lets_a_board_turn_about_its_axis_alone(turn: SE3, held: bool) -> None:
+    """A board of 800 mm in a block at its end, on a pin that is upright, along it so that it rolls, or across it so that it tips."""
+    block, board = placed(box(100, B, 90), 50, 0, -55.2), placed(box(L, B, H), 400, 0, 0)
+    pin = joint("pin", "revolute", ("block", at(50) @ turn), ("board", at(50) @ turn), limits=[(0.0, 1.0)])
+    subject = Subject(of(("block", block), ("board", board), joints=[pin]))
+
+    assert (bent(subject) is not None) is held
+
+
 def test_what_hangs_on_a_board_does_not_carry_it() -> None:
     ground, posts = placed(box(900, 300, 10), 400, 0, -105), [("post0", placed(box(100, B, 90), 50, 0, -55))]
     board, hung = placed(box(L, B, H), 400, 0, 0), placed(box(100, B, 50), 750, 0, -35)
