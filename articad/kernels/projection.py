@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from build123d import Compound, Edge, GeomType
-from OCP.BRep import BRep_Tool
+from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepLib import BRepLib
@@ -22,8 +22,8 @@ from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Line, GeomAbs_Plane, GeomAbs_Sph
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_WIRE
-from OCP.TopoDS import TopoDS, TopoDS_Shape
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_SOLID, TopAbs_WIRE
+from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Shape
 
 from articad.aliases import Json
 from articad.kernels.measure import found
@@ -113,7 +113,15 @@ def _beyond(shape: TopoDS_Shape, eye: Any, at: float, size: float) -> TopoDS_Sha
     y = np.cross(-eye, x)
     corner = at * eye - 0.5 * side * (x + y)
     frame = gp_Ax2(gp_Pnt(*corner), gp_Dir(*(-eye)), gp_Dir(*x))
-    return BRepAlgoAPI_Common(shape, BRepPrimAPI_MakeBox(frame, side, side, far).Shape()).Shape()
+    room = BRepPrimAPI_MakeBox(frame, side, side, far).Shape()
+    solids = list(found(shape, TopAbs_SOLID))
+    if len(solids) < 2:
+        return BRepAlgoAPI_Common(shape, room).Shape()
+    builder, rest = BRep_Builder(), TopoDS_Compound()
+    builder.MakeCompound(rest)
+    for solid in solids:  # each by itself: of solids that touch, the common part of all at once may lack some
+        builder.Add(rest, BRepAlgoAPI_Common(solid, room).Shape())
+    return rest
 
 
 def _cut_faces(shape: TopoDS_Shape, eye: Any, at: float) -> Iterator[TopoDS_Shape]:

@@ -10,9 +10,10 @@ import numpy as np
 from articad.arrays import FloatArray
 from articad.kernels.views import DrawnView
 from articad.papers.callouts import balloons, spots_of
+from articad.papers.hatching import hatched
 from articad.papers.items import Item
 from articad.papers.part_sheet import ISO, SCALES, on_paper, ratio
-from articad.papers.sheet import A3, BLOCK, EDGE, FILING, ROW, DrawingSheet, Lettering, SheetLine
+from articad.papers.sheet import A3, BLOCK, EDGE, FILING, LARGE, ROW, DrawingSheet, Lettering, SheetLine, sampled
 from articad.render.camera import Camera
 from articad.render.scene import scene_of
 
@@ -23,10 +24,18 @@ __all__ = ["assembly_sheet"]
 
 _PIXELS: Final = 700
 _WIDTHS: Final = (9.0, 42.0, 9.0, 26.0, 34.0, 18.0)
+_NOTE: Final = 5.6  # from one line of the notes to the next
 _HEAD: Final = ("item", "name", "qty", "material", "size, mm", "kg, one")
 
 
-def assembly_sheet(assembly: Assembly, items: Sequence[Item], drawn: DrawnView, fields: Mapping[str, str]) -> DrawingSheet:
+def assembly_sheet(
+    assembly: Assembly,
+    items: Sequence[Item],
+    drawn: DrawnView,
+    fields: Mapping[str, str],
+    notes: Sequence[str] = (),
+    section: DrawnView | None = None,
+) -> DrawingSheet:
     """Return the sheet of an assembly on A3.
 
     Args:
@@ -34,6 +43,8 @@ def assembly_sheet(assembly: Assembly, items: Sequence[Item], drawn: DrawnView, 
         items: Its items.
         drawn: Its view `ISO`.
         fields: Of the title block, by label.
+        notes: Lines of text to the left of the title block.
+        section: A section through it, which is drawn above the parts list.
     """
     points = np.concatenate(
         [
@@ -46,7 +57,7 @@ def assembly_sheet(assembly: Assembly, items: Sequence[Item], drawn: DrawnView, 
     low, high = flat.min(axis=0), flat.max(axis=0)
     table = sum(_WIDTHS)
     left, right = FILING + 22.0, A3[0] - EDGE - 4.0 - table - 22.0
-    bottom, top = EDGE + 16.0, A3[1] - EDGE - 12.0
+    bottom, top = EDGE + 16.0 + _NOTE * len(notes), A3[1] - EDGE - 12.0
     fits = (s for s in SCALES if (high - low)[0] * s <= right - left and (high - low)[1] * s <= top - bottom)
     scale = next(fits, SCALES[-1])
     origin = 0.5 * (np.array([left + right, bottom + top]) - scale * (low + high))
@@ -54,6 +65,8 @@ def assembly_sheet(assembly: Assembly, items: Sequence[Item], drawn: DrawnView, 
     sheet.strokes += [SheetLine("visible", on_paper(line, (float(origin[0]), float(origin[1])), scale)) for line in drawn.visible]
     seen = _seen(assembly, items)
     balloons(sheet, {number: origin + scale * spot for number, spot in seen.items()}, left - 12.0, right + 12.0)
+    for row, line in enumerate(reversed(notes)):
+        sheet.texts.append(Lettering(FILING + 6.0, EDGE + 12.0 + _NOTE * row, line))
     if hidden := [str(item.number) for item in items if item.number not in seen]:
         sheet.texts.append(Lettering(FILING + 6.0, EDGE + 6.0, f"Not visible in this view: item {', '.join(hidden)}"))
     rows = [
@@ -63,9 +76,28 @@ def assembly_sheet(assembly: Assembly, items: Sequence[Item], drawn: DrawnView, 
     room = int((A3[1] - EDGE - 14.0 - (EDGE + BLOCK[1] + 6.0)) / ROW) - 2
     more = f" (items 1 to {room} of {len(rows)}; all are in the bill of materials)" if len(rows) > room else ""
     sheet.table(A3[0] - EDGE - 4.0, EDGE + BLOCK[1] + 6.0, f"Parts list{more}", _HEAD, rows[:room], _WIDTHS)
+    if section is not None:
+        _draw_section(sheet, section, (right + 22.0, EDGE + BLOCK[1] + 16.0 + ROW * (len(rows[:room]) + 1), A3[0] - EDGE - 8.0, top))
     sheet.frame(_fields(assembly, fields, scale), first_angle=False)
     sheet.told = {"assembly": assembly.name, "scale": scale, "items": [item.number for item in items]}
     return sheet
+
+
+def _draw_section(sheet: DrawingSheet, drawn: DrawnView, room: tuple[float, float, float, float]) -> None:
+    """Draw a section at the largest scale at which it fits into a room (left, bottom, right, top); hatches of neighbours differ."""
+    points = np.concatenate([sampled(line) for line in drawn.visible])
+    low, high = points.min(axis=0), points.max(axis=0)
+    wide, tall = room[2] - room[0], room[3] - room[1] - 8.0
+    scale = next((s for s in SCALES if (high - low)[0] * s <= wide and (high - low)[1] * s <= tall), SCALES[-1])
+    origin = np.array([0.5 * (room[0] + room[2]), room[1] + 0.5 * tall]) - 0.5 * scale * (low + high)
+    sheet.strokes += [SheetLine("visible", on_paper(line, (float(origin[0]), float(origin[1])), scale)) for line in drawn.visible]
+    for index, loops in enumerate(drawn.cut):
+        turn = np.array([1.0 if index % 2 == 0 else -1.0, 1.0])
+        for start, end in hatched([turn * (origin + scale * loop) for loop in loops]):
+            sheet.line("hatch", *(turn * start), *(turn * end))
+    middle, above = 0.5 * (room[0] + room[2]), float(origin[1] + scale * high[1]) + 3.5
+    told = "" if scale == sheet.scale else f" ({ratio(scale)})"
+    sheet.texts.append(Lettering(middle, above, f"{drawn.name}{told}", LARGE, "middle", bold=True))
 
 
 def _seen(assembly: Assembly, items: Sequence[Item]) -> dict[int, FloatArray]:

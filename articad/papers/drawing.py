@@ -29,6 +29,8 @@ def drawings_of(
     *,
     purchased: Sequence[str] = (),
     size: tuple[float, float] | None = None,
+    notes: Sequence[str] = (),
+    section: View | None = None,
     sandbox: Sandbox = "strict",
 ) -> Iterator[DrawingSheet]:
     """Yield the sheets of a product: the assembly first, then each item that is made; or the sheet of one part.
@@ -38,6 +40,8 @@ def drawings_of(
         part: Name of a part.
         purchased: Parts that are bought, which get no sheet.
         size: Of the sheets of parts [mm]; A4 or A3 by need if None.
+        notes: Lines of text on the sheet of the assembly.
+        section: A view with a cut that is drawn on the sheet of the assembly, under its name.
         sandbox: Isolation of the kernel.
 
     Raises:
@@ -60,7 +64,7 @@ def drawings_of(
         yield _part_sheet(product, item, fits, kernel, "1 / 1", size, name=part)
         return
     count = len(drawn) + 1
-    yield _assembly_sheet(product, items, kernel, f"1 / {count}")
+    yield _assembly_sheet(product, items, kernel, f"1 / {count}", notes, section)
     for number, item in enumerate(drawn, start=2):
         yield _part_sheet(product, item, fits, kernel, f"{number} / {count}", size)
 
@@ -97,10 +101,12 @@ def _part_sheet(
     return part_sheet(PartFacts(name, part.solid.bbox, dimensions, holes, features, views, section, fields), size)
 
 
-def _assembly_sheet(product: Assembly, items: Sequence[Item], kernel: ViewKernel, sheet: str) -> DrawingSheet:
+def _assembly_sheet(
+    product: Assembly, items: Sequence[Item], kernel: ViewKernel, sheet: str, notes: Sequence[str], section: View | None
+) -> DrawingSheet:
     poses = product.at()
     shapes = [(brep, poses[name]) for name, one in product.realised.items() if (brep := one.built.solid.brep) is not None]
-    views, _ = kernel.project(shapes, [View(ISO.name, ISO.right, ISO.up)])
+    views, _ = kernel.project(shapes, [View(ISO.name, ISO.right, ISO.up), *(() if section is None else (section,))])
     corners = np.concatenate(
         [T.rotation @ mesh.vertices.T + T.translation[:, None] for name, T in poses.items() if (mesh := product.parts[name].mesh)], axis=1
     )
@@ -111,4 +117,4 @@ def _assembly_sheet(product: Assembly, items: Sequence[Item], kernel: ViewKernel
         "Items": str(len(items)),
         "Mass": f"{sum(part.mass.mass for part in product.parts.values() if part.mass is not None):.4g} kg",
     }
-    return assembly_sheet(product, items, views[ISO.name], fields)
+    return assembly_sheet(product, items, views[ISO.name], fields, notes, None if section is None else views[section.name])

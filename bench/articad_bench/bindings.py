@@ -1,6 +1,7 @@
 """Bindings of a task's checks to bodies, derived from its reference.
 
-What each joint that is asked for moves, which joints surfaces make, and, where a picture shows it, where parts lie and which hand it is.
+What each joint that is asked for moves, which joints surfaces make, and, where a picture shows it, where parts lie and which hand it is;
+of dimensioned sheets, each part's volume, holes and shoulders, and the fits.
 The bounds are wide, because another construction of the same product is another share of its matter; a disc, a wire or a missing body is outside.
 """
 
@@ -14,6 +15,7 @@ from articad.errors import ArticadError
 from articad.kinematics.joints import JointType
 from articad_bench.checks import AnyCheck, Joints, Lead, Made, Moves, Parts, moved_shares
 from articad_bench.likeness_checks import Arranged, Handed, Matter, Row, arrangement, filled, handedness, moments_of
+from articad_bench.machined_checks import Machined, Toleranced, fits_stated, machined
 from articad_bench.subject import Subject
 from articad_bench.task import Task
 from articad_bench.whole_checks import Threads
@@ -27,7 +29,7 @@ HAND: Final = 0.02  # by which the moments of mirror images differ, at least, wh
 DETAIL: Final = 0.001  # by which they differ where a detail has one: less is the roughness of meshes
 HANDED: Final = re.compile(r"\b(left|right|(anti|counter)?clockwise)\b", re.IGNORECASE)
 """Words of a prompt that tell a product from its mirror image."""
-BOUND: Final = (Moves, Made, Arranged, Handed, Matter, Threads)
+BOUND: Final = (Moves, Made, Arranged, Handed, Matter, Threads, Machined, Toleranced)
 
 
 def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
@@ -59,7 +61,13 @@ def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
     stated = any(isinstance(check, Lead) and check.hand is not None for check in task.checks)
     if not stated and 2 * sum(left) != len(left):  # else its mirror image has the same threads
         checks.append(Threads(left=sum(left)))
+    if _form(task) == "sheets":
+        checks += [*machined(subject), *fits_stated(subject)]
     return (*checks, *_likeness(task, subject))
+
+
+def _form(task: Task) -> str | None:
+    return None if task.drawing is None else task.drawing.form
 
 
 def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
@@ -68,9 +76,9 @@ def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
     count = len(subject.shaped)
     if task.images and count > 1 and any(isinstance(check, Parts) and check.number == (count, count) for check in task.checks):
         rows = arrangement(subject)
-        checks.append(Arranged(parts=_rows(rows)))
+        checks.append(Arranged(parts=_rows(rows), loosely=_form(task) == "photos"))
     elif task.images and _bodies_are_stated(task, subject):
-        checks.append(Arranged(parts=_rows(arrangement(subject, bodies=True)), bodies=True))
+        checks.append(Arranged(parts=_rows(arrangement(subject, bodies=True)), bodies=True, loosely=_form(task) == "photos"))
     hand = handedness(subject) if shows_hands(task) else 0.0
     if hand > DETAIL:
         matter = tuple(round(value, 5 if hand <= HAND else 4) for value in moments_of(subject).tolist())

@@ -27,6 +27,7 @@ from articad_bench.check import Check as Check  # noqa: PLC0414  (others take th
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
 from articad_bench.function_checks import Effort, Folds, Passes, PutTogether
 from articad_bench.likeness_checks import Arranged, Handed, Matter
+from articad_bench.machined_checks import Machined, Toleranced
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
@@ -503,7 +504,9 @@ AnyCheck = Annotated[
     | Carries
     | Folds
     | Passes
-    | Stack,
+    | Stack
+    | Machined
+    | Toleranced,
     Field(discriminator="kind"),
 ]
 

@@ -290,16 +290,17 @@ def _judge(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 def _draw(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.processes import scratch
-    from articad_bench.drawing import DRAWING, draw_task
+    from articad_bench.pictures import pictures_of
     from articad_bench.reference import reference
 
     files = []
     for folder, task in _tasks(options):
         if task.drawing is not None:
-            file = folder / DRAWING
-            scratch.write(file, draw_task(reference(folder, task), task.drawing))
-            terminal.say(f"{file}  {file.stat().st_size / 1000:.1f} kB")
-            files.append(str(file))
+            for name, content in pictures_of(reference(folder, task), task.drawing).items():
+                file = folder / name
+                scratch.write(file, content)
+                terminal.say(f"{file}  {file.stat().st_size / 1000:.1f} kB")
+                files.append(str(file))
     return {"schema": "articad.bench-drawings/1", "ok": True, "findings": [], "files": files}
 
 

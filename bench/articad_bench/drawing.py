@@ -270,10 +270,15 @@ def legend(subject: Subject, kinds: Sequence[JointKind], form: Drawing) -> list[
     """Return the lines that are written below a drawing."""
     sides = " x ".join(_number(float(side)) for side in subject.size)
     said = [f"{sides} mm (x, y, z), {len(subject.shaped)} parts." if len(subject.shaped) > 1 else f"{sides} mm (x, y, z), one part."]
-    said += [f"{kind.letter}: {f'{len(kind.joints)} x ' if len(kind.joints) > 1 else ''}{kind.words}" for kind in kinds]
-    said += dict.fromkeys(_couplings(subject, kinds)) if kinds else ()
+    said += motion_lines(subject, kinds)
     said += [f"{name.replace('_', ' ')}: {' x '.join(_number(float(side)) for side in subject.extents(name))} mm" for name in form.parts]
     return [line for text in (*said, *form.notes) for line in _wrapped(text)]
+
+
+def motion_lines(subject: Subject, kinds: Sequence[JointKind]) -> list[str]:
+    """Return what the joints do and how far, and what they are coupled to, a line for each kind."""
+    said = [f"{kind.letter}: {f'{len(kind.joints)} x ' if len(kind.joints) > 1 else ''}{kind.words}" for kind in kinds]
+    return [*said, *(dict.fromkeys(_couplings(subject, kinds)) if kinds else ())]
 
 
 def _couplings(subject: Subject, kinds: Sequence[JointKind]) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations, product
 from typing import Final, Literal
 
@@ -16,6 +16,7 @@ from articad_bench.shape_checks import placed
 from articad_bench.subject import Subject
 
 PLACE: Final = 0.12  # of the diagonal of the whole, by which a part may lie beside its place
+LOOSELY: Final = {3: 2.2, 4: 1.3}  # the same, where sizes are read off photos
 APART: Final = 0.03  # of the diagonal: places nearer to each other are not told apart
 LARGER: Final = {3: 1.3, 4: 1.04}  # in volume and in size, by column: parts nearer to each other than this have no order
 TURNS: Final = tuple(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]], dtype=np.float64) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1)))
@@ -36,11 +37,13 @@ class Arranged(Check):
             whole's diagonal.
         bodies: Whether these are bodies: parts that are fixed together count as one. Bodies may be of any number of parts, and how much of
             its box a body fills is its maker's choice; so their order of size is that of their boxes.
+        loosely: Whether sizes are read off photos: then only parts of very different sizes have an order.
     """
 
     kind: Literal["arranged"] = "arranged"
     parts: tuple[Row, ...]
     bodies: bool = False
+    loosely: bool = False
 
     @property
     def wanted(self) -> str:
@@ -54,7 +57,8 @@ class Arranged(Check):
         found, wanted = np.array(arrangement(subject, bodies=self.bodies)), np.array(self.parts)
         if len(found) != len(wanted):
             return False, f"{len(found)} {self._name}"
-        tries = [_compared(found, wanted, turn, columns=(4,) if self.bodies else (3, 4)) for turn in TURNS]
+        least = {column: (LOOSELY if self.loosely else LARGER)[column] for column in ((4,) if self.bodies else (3, 4))}
+        tries = [_compared(found, wanted, turn, least) for turn in TURNS]
         beside, reversed_ = min(tries, key=lambda each: (each[0] > PLACE or each[1] > 0, each))
         return (
             beside <= PLACE and not reversed_,
@@ -62,8 +66,15 @@ class Arranged(Check):
         )
 
 
-def _compared(found: FloatArray, wanted: FloatArray, turn: FloatArray, columns: Sequence[int]) -> tuple[float, int]:
-    """Return how far the worst part lies beside its place, and how many pairs of parts have the other order of size by some columns."""
+def _compared(found: FloatArray, wanted: FloatArray, turn: FloatArray, least: Mapping[int, float]) -> tuple[float, int]:
+    """Return how far the worst part lies beside its place, and how many pairs of parts have the other order of size by some columns.
+
+    Args:
+        found: Rows of the product.
+        wanted: Rows that are shown.
+        turn: Of the whole.
+        least: By column, how many times larger a part must be shown to be the larger one.
+    """
     apart = np.linalg.norm(found[:, None, :3] - (wanted[:, :3] @ turn.T)[None], axis=2)
     rows, places = linear_sum_assignment(apart**2)
     mine = found[rows[np.argsort(places)]]
@@ -71,10 +82,9 @@ def _compared(found: FloatArray, wanted: FloatArray, turn: FloatArray, columns: 
     for a, b in combinations(range(len(wanted)), 2):
         if np.linalg.norm(wanted[a, :3] - wanted[b, :3]) < APART:
             continue
-        for column in columns:
-            least = LARGER[column]
+        for column, times in least.items():
             shown, is_ = np.log(wanted[a, column] / wanted[b, column]), np.log(mine[a, column] / mine[b, column])
-            wrong += bool(abs(shown) > np.log(least) and shown * is_ < 0)
+            wrong += bool(abs(shown) > np.log(times) and shown * is_ < 0)
     return float(apart[rows, places].max()), wrong
 
 

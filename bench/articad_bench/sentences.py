@@ -101,6 +101,26 @@ _DRAWN: Final = {
     "rise": "drawing: what the joints do, and how far",
 }
 """What every drawing states."""
+_ON_SHEETS: Final = _DRAWN | {
+    "machined": "sheets: views, dimensions and tables of each part",
+    "toleranced": "sheets: fits in the tables of holes",
+    "part_size": "sheets: sides of the parts",
+    "holes": "sheets: tables of holes",
+    "studs": "sheets: dimensions of the parts",
+    "gap": "sheets: dimensions of the parts",
+    "wall": "sheets: dimensions of the parts",
+    "links": "sheets: dimensions of the parts",
+    "square": "sheets: tables of holes",
+}
+"""What dimensioned sheets state."""
+_ON_PHOTOS: Final = {
+    "parts": "photos: number of parts",
+    "joints": "photos: what the joints do",
+    "freedoms": "photos: what moves",
+    "loops": "photos: what moves",
+}
+"""What photos show without a scale."""
+PHOTO: Final = 0.1  # of a measure, that somebody who reads photos with care may be off
 
 
 @dataclass(frozen=True)
@@ -392,10 +412,25 @@ def _drawn(task: Task, check: AnyCheck) -> str | None:
     """Return what of the drawing states a check; None if nothing."""
     if task.drawing is None:
         return None
+    if task.drawing.form == "sheets":
+        return _ON_SHEETS.get(check.kind)
+    if task.drawing.form == "photos":
+        shown = _ON_PHOTOS.get(check.kind) if check.kind != "joints" or _is_readable(check) else None
+        return shown or (f"photos: proportions, within {100 * PHOTO:g} %" if _is_readable(check) else None)
     if check.kind in _DRAWN and (task.drawing.legend or check.kind in {"size", "extent", "parts"}):
         return _DRAWN[check.kind]
     named = check.kind in {"part_size", "studs"} and task.drawing.parts
     return f"drawing: sides of {', '.join(task.drawing.parts)}" if named else None
+
+
+def _is_readable(check: AnyCheck) -> bool:
+    """Return whether all measures of a check have the room that a reader of photos needs."""
+    tolerance = getattr(check, "tolerance", None)
+    if check.kind in {"size", "part_size", "holes", "studs", "links"} and tolerance is not None:
+        return bool(tolerance >= PHOTO) and getattr(check, "length", None) is None
+    return check.kind in {"joints", "extent", "travel", "wall"} and all(
+        high - low >= 2 * PHOTO * low for _, low, high in _values(check) if high > low
+    )
 
 
 def _worded(check: AnyCheck, stated: Sequence[Number]) -> str | None:

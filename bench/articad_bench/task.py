@@ -29,7 +29,13 @@ A task that is posed by a picture names it, and says how it is drawn from the re
     "drawing": {"parts": ["shelf"], "notes": ["All boards are 18 mm thick."]}
 
 `articad bench draw --task NAME` draws it: measures of the whole, what each joint does and how far, the sides of the named parts, and
-the notes, so that even with an empty prompt nothing that is checked has to be guessed.
+the notes, so that even with an empty prompt nothing that is checked has to be guessed. Two other forms have several pictures:
+
+    "images": ["sheet_1.png", "sheet_2.png"],                                    the assembly with its notes, then each part
+    "drawing": {"form": "sheets", "section": ["y", 0], "notes": ["The studs are screwed in."]}
+
+    "images": ["photo_1.jpg", "photo_2.jpg", "photo_3.jpg", "photo_4.jpg"],      from four sides; the last one on its way
+    "drawing": {"form": "photos", "moved": 0.7}
 """
 
 from __future__ import annotations
@@ -58,19 +64,26 @@ _MOVING: Final = frozenset({"freedoms", "joints", "loops", "ratio", "rise", "tra
 
 
 class Drawing(PlanObject):
-    """How a task's picture is drawn from its reference solution, by `articad bench draw`.
+    """How a task's pictures are drawn from its reference solution, by `articad bench draw`.
 
     Attributes:
+        form: `overview`, one picture with the measures of the whole; `sheets`, dimensioned drawings of the assembly and of each part;
+            `photos`, four pictures without any numbers.
         views: Keys of `articad.render.VIEWS`; those straight on tell the measures of the whole.
         legend: Whether joints get letters and are told below: what each does, how far, and what it is coupled to.
         parts: Parts of the reference whose sides are told.
-        notes: What else is written below.
+        notes: What else is written below, or on the sheet of the assembly.
+        section: Of sheets: the axis that a section through the assembly is square to, and where on it the plane lies [mm].
+        moved: Of photos: how far the drivers are on the fourth one, from rest to their farther ends.
     """
 
+    form: Literal["overview", "sheets", "photos"] = "overview"
     views: tuple[str, ...] = ("iso", "front", "right", "top")
     legend: bool = True
     parts: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    section: tuple[Literal["x", "y"], float] | None = None
+    moved: Annotated[float, Field(ge=0, le=1)] = 0.0
 
 
 def _is_name(text: str) -> str:

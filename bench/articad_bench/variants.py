@@ -31,7 +31,7 @@ from articad.processes import scratch
 from articad_bench.bindings import BOUND, NotBoundError, bound_task
 from articad_bench.cheat_run import refused_by
 from articad_bench.checks import AnyCheck
-from articad_bench.drawing import DRAWING, draw_task
+from articad_bench.pictures import is_drawn, pictures_of
 from articad_bench.reference import reference, reference_folder, references
 from articad_bench.sentences import Number, edit_text, holds, numbers_of, sentences, stage_of, texts_of
 from articad_bench.subject import Subject
@@ -168,8 +168,9 @@ def _made(
         fresh = bound_task(fresh, subject, after)
     except NotBoundError as error:
         raise NoVariantError(str(error)) from error
-    if fresh.drawing is not None and DRAWING in fresh.images:
-        scratch.write(target / DRAWING, draw_task(products[0], fresh.drawing))
+    if fresh.drawing is not None and is_drawn(fresh):
+        for name, content in pictures_of(products[0], fresh.drawing).items():
+            scratch.write(target / name, content)
     scratch.write(target / "task.json", as_stored(fresh))
     return fresh
 

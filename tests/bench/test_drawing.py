@@ -11,9 +11,11 @@ from PIL import Image
 
 from articad import examples
 from articad.assembly import Assembly
+from articad.papers.items import items_of
 from articad.plan.schema import AssemblyPlan
 from articad_bench import drawing
 from articad_bench.drawing import COLORS, PANE, draw_task
+from articad_bench.pictures import PHOTO_VIEWS, SHEET_PIXELS, is_drawn, pictures_of
 from articad_bench.reference import reference
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, Drawing, tasks_in
@@ -21,6 +23,7 @@ from articad_bench.task import TASKS, Drawing, tasks_in
 pytestmark = pytest.mark.slow
 
 LARGEST = 40_000  # bytes
+LARGEST_SHEET = 60_000
 
 
 @cache
@@ -78,12 +81,31 @@ def test_what_is_drawn_has_its_measures_beside_it() -> None:
 def test_a_kept_drawing_is_that_of_the_reference(name: str) -> None:
     ((folder, task),) = tasks_in(TASKS, names=[name])
     assert task.drawing is not None
-    assert (folder / drawing.DRAWING).read_bytes() == draw_task(reference(folder, task), task.drawing)
+    drawn = pictures_of(reference(folder, task), task.drawing)
+    assert {name: (folder / name).read_bytes() == content for name, content in drawn.items()} == dict.fromkeys(task.images, True)
 
 
 def test_every_task_that_is_asked_by_pictures_has_them() -> None:
     for folder, task in tasks_in(TASKS):
         assert task.prompt or task.images, task.name
-        assert (task.drawing is None) or drawing.DRAWING in task.images, task.name
+        assert (task.drawing is None) or is_drawn(task), task.name
         for image in task.images:
-            assert 0 < (folder / image).stat().st_size <= LARGEST, task.name
+            assert 0 < (folder / image).stat().st_size <= (LARGEST if image == drawing.DRAWING else LARGEST_SHEET), task.name
+
+
+def test_sheets_show_the_assembly_with_what_moves_and_then_each_kind_of_part() -> None:
+    pictures = pictures_of(example("slider_crank"), Drawing(form="sheets", section=("y", 0.0), notes=("Oil it.",)))
+
+    assert list(pictures) == [f"sheet_{number}.png" for number in range(1, len(pictures) + 1)]
+    assert len(pictures) == 1 + len(items_of(example("slider_crank")))
+    images = [Image.open(io.BytesIO(content)) for content in pictures.values()]
+    assert {image.width for image in images} == {SHEET_PIXELS}
+    assert {image.format for image in images} == {"PNG"}
+
+
+def test_photos_are_four_and_the_last_one_shows_the_product_on_its_way() -> None:
+    at_rest, moved = (pictures_of(example("slider_crank"), Drawing(form="photos", moved=moved)) for moved in (0.0, 0.25))
+
+    assert len(at_rest) == len(PHOTO_VIEWS) == 4
+    assert [name for name in at_rest if at_rest[name] != moved[name]] == ["photo_4.jpg"]
+    assert all(len(content) < LARGEST_SHEET for content in at_rest.values())

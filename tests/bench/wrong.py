@@ -424,6 +424,8 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "threads": _other_lead,
     "links": _larger,
     "square": _larger,
+    "machined": _larger,
+    "toleranced": _larger,
     "arranged": _one_aside,
     "handed": _mirror_image,
     "unchanged": _all_new,

@@ -14,6 +14,7 @@ from typing import Any
 import ezdxf
 import numpy as np
 import pytest
+from PIL import Image
 
 from articad.agents.pipeline import replay
 from articad.assembly import Assembly
@@ -26,6 +27,7 @@ from articad.kernels.views import View, ViewKernel
 from articad.papers.drawing import drawings_of
 from articad.papers.hatching import hatched
 from articad.papers.part_sheet import FRONT
+from articad.papers.raster import sheet_png
 from articad.papers.sheet import DrawingSheet, Lettering, text_width
 from articad.papers.writers import written_dxf, written_pdf, written_svg
 from articad.plan.schema import AssemblyPlan
@@ -392,6 +394,40 @@ def test_the_parts_list_of_the_assembly_has_the_sizes_of_the_items() -> None:
     """As the scripts make them: 12 mm and a boss of 9 mm; a pin of 26 mm in a head of 9 mm radius and 4 mm height."""
     words = [text.words for text in sheets()[0].texts]
     assert {"81.5 × 44 × 21", "18 × 18 × 30"} <= set(words)
+
+
+def test_the_sheet_of_the_assembly_has_notes_and_a_section_of_every_part() -> None:
+    section = View("Section at y = 0", FRONT.right, FRONT.up, cut=0.0)
+    one = next(drawings_of(bearing(), notes=("Turn it by hand.", "Lengths in mm."), section=section))
+    words = [text.words for text in one.texts]
+    assert {"Turn it by hand.", "Lengths in mm."} <= set(words)
+    assert any(text.startswith("Section at y = 0") for text in words)
+    assert_nothing_overlaps(one)
+    slopes = {float(np.sign((s.line.y1 - s.line.y0) * (s.line.x1 - s.line.x0))) for s in one.strokes if s.style == "hatch"}  # type: ignore[union-attr]
+    assert slopes == {1.0, -1.0}  # neighbours are hatched differently
+
+
+def test_a_section_of_solids_that_touch_cuts_each_of_them() -> None:
+    """The common part of a box with all at once may lack some of them."""
+    shapes = [(one.built.solid.brep, bearing().at()[name]) for name, one in bearing().realised.items() if one.built.solid.brep is not None]
+    views, _ = ViewKernel().project(shapes, [View("section", FRONT.right, FRONT.up, cut=0.0)])
+    assert len(views["section"].cut) == 3  # the plate to the left and to the right of the bore, and the pin
+
+
+def test_a_picture_of_a_sheet_shows_its_lines_and_texts_and_not_the_margin() -> None:
+    one = sheet("plate")
+    first, second = (sheet_png(one, 1200) for _ in range(2))
+    assert first == second
+    image = np.asarray(Image.open(io.BytesIO(first)).convert("L"))
+    left, bottom, right, top = one.inside
+    k = 1200 / (right - left + 2)
+    assert image.shape == (round(k * (top - bottom + 2)), 1200)
+    assert image[round(k), image.shape[1] // 4] < 128  # the frame's upper edge, one millimetre inside
+
+    for words, x0, y0, x1, y1 in (row for row in boxes(one) if row[0]):
+        rows = slice(round(k * (top + 1 - y1)), round(k * (top + 1 - y0)))
+        ink = (image[rows, round(k * (x0 - left + 1)) : round(k * (x1 - left + 1))] < 128).mean()
+        assert 0.03 < ink < 0.8, words
 
 
 def test_an_unknown_part_is_refused_with_the_nearest_name() -> None:
