@@ -42,6 +42,7 @@ _SOURCES: Final = (
     "spacing_checks.py",
     "function_checks.py",
     "strength_checks.py",
+    "beams.py",
     "stack_checks.py",
     "wanted.py",
     "solids.py",

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from articad.arrays import FloatArray
 from articad.geometry import TriMesh
 from articad.kinematics.joints import JointType
+from articad_bench.beams import Bent, Support, beam
 from articad_bench.check import Bounds, Check, in_words
 from articad_bench.subject import Subject
 
@@ -22,16 +22,10 @@ TOUCH_MM: Final = 0.3  # parts so near each other touch
 PLAY_MM: Final = 0.6  # as far as a pin may be from its bore
 UP: Final = 0.999  # cosine of the lean of a level surface
 LEVEL_MM: Final = 0.05  # triangles within this height are one surface
-STATIONS: Final = 60  # along a beam
 STRIP: Final = 1 / 3  # of the width of a board: its middle, which what lies all round it does not carry both ways
 TURNS: Final = 0.5  # cosine of the angle of a pin to the line about which a board bends, from which it lets the board turn
 CLAMPED: Final = 2.0  # times the thickness of a board: what is fixed to it along more than this, or half of it, does not let it turn
 _PINS: Final = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.BALL, JointType.UNIVERSAL})
-SINGULAR: Final = 1e12  # condition of a beam that nothing holds
-
-
-Held = NDArray[np.bool_]
-"""At which nodes of a beam something holds it."""
 
 
 class Top(NamedTuple):
@@ -44,6 +38,7 @@ class Top(NamedTuple):
         sides: Of the least rectangle around it, ascending `(2,)` [mm].
         ways: Directions of the longer and the shorter side `(2, 2)`.
         centre: Middle of the surface in the frame of the whole `(3,)` [mm].
+        corners: Of its triangles, seen from above `(n, 2)` [mm].
     """
 
     part: str
@@ -52,6 +47,7 @@ class Top(NamedTuple):
     sides: FloatArray
     ways: FloatArray
     centre: FloatArray
+    corners: FloatArray
 
 
 class Carries(Check):
@@ -61,7 +57,7 @@ class Carries(Check):
     part, without this board carry it where they touch it: what only touches it from below pushes, what is fixed to it holds both ways, and
     does not let it turn where it reaches along twice the thickness of the board, or half of it, and a pin lets it turn about its axis. Both directions of the
     board are looked at, and the worse one counts; what lies all round a board carries the middle third of it in the better direction. The load
-    lies evenly on the whole board, or on any one place of it.
+    lies evenly on the whole surface, or on any one place of it.
 
     Attributes:
         kg: Load on each board.
@@ -106,13 +102,6 @@ class Carries(Check):
         return max(large, key=lambda top: top.area, default=None)
 
 
-class Bent(NamedTuple):
-    """Largest bending stress [N/mm²] and sag [mm] of a board."""
-
-    stress: float
-    sag: float
-
-
 def _in_words(bent: Bent | None) -> str:
     return "is not held" if bent is None else f"{bent.stress:.3g} N/mm², {bent.sag:.3g} mm"
 
@@ -131,7 +120,7 @@ def level_tops(subject: Subject, name: str) -> list[Top]:
         points = mesh.vertices[mesh.triangles[rows]]
         sides, ways = _rectangle(points.reshape(-1, 3)[:, :2])
         middle = np.average(points.mean(axis=1), axis=0, weights=area[rows])
-        tops.append(Top(name, float(middle[2]) - ground, float(area[rows].sum()), sides, ways, middle))
+        tops.append(Top(name, float(middle[2]) - ground, float(area[rows].sum()), sides, ways, middle, points.reshape(-1, 3)[:, :2]))
     return tops
 
 
@@ -173,7 +162,15 @@ def bending(subject: Subject, top: Top, kg: float, modulus: float, *, anywhere: 
         middle, half = float(ends.min() + ends.max()) / 2, STRIP * float(np.ptp(ends)) / 2
         for limits in (None, (beside, middle - half, middle + half)):
             supports = [row for name in carriers for row in _supports(subject, top.part, name, axis, limits)]
-            bent = _beam(mesh, axis, supports, kg * G, modulus, anywhere=anywhere)
+            bent = beam(
+                mesh,
+                axis,
+                supports,
+                kg * G,
+                modulus,
+                (float((top.corners @ way).min()), float((top.corners @ way).max())),
+                anywhere=anywhere,
+            )
             (whole if limits is None else strips).append(bent)
     if None in whole:
         return None
@@ -184,20 +181,6 @@ def bending(subject: Subject, top: Top, kg: float, modulus: float, *, anywhere: 
 
 
 # ---------------------------------------------------------------------- what carries a board
-
-
-class Support(NamedTuple):
-    """A stretch along a board where something carries it.
-
-    Attributes:
-        low: Its beginning [mm].
-        high: Its end [mm].
-        both_ways: Whether it holds the board down as well; then it does not let it turn where it is longer than a point.
-    """
-
-    low: float
-    high: float
-    both_ways: bool
 
 
 def _placed(subject: Subject, name: str) -> TriMesh:
@@ -305,146 +288,3 @@ def _cut(polygon: Sequence[FloatArray], normal: FloatArray, limit: float) -> lis
         if before * after < 0:
             kept.append(a + before / (before - after) * (b - a))
     return kept
-
-
-# ---------------------------------------------------------------------- the beam
-
-
-class Section(NamedTuple):
-    """A section: second moment about its level axis [mm⁴], and distance of its farthest point from that axis [mm]."""
-
-    moment: float
-    edge: float
-
-
-def section(mesh: TriMesh, axis: FloatArray, at: float) -> Section:
-    """Return the section of a solid across an axis, `at` from the origin along it [mm].
-
-    Green's theorem over the segments in which triangles cross the plane: the solid lies on the left of each.
-    """
-    side = mesh.vertices @ axis - at
-    sides = side[mesh.triangles]
-    crossed = (sides.min(axis=1) < 0) & (sides.max(axis=1) >= 0)
-    if not crossed.any():
-        return Section(0.0, 0.0)
-    corners, sides = mesh.vertices[mesh.triangles[crossed]], sides[crossed]
-    across = np.cross([0.0, 0.0, 1.0], axis)
-    below = sides < 0
-    starts, ends = np.empty((len(corners), 2)), np.empty((len(corners), 2))
-    for i in range(3):
-        j = (i + 1) % 3
-        with np.errstate(divide="ignore", invalid="ignore"):
-            points = corners[:, i] + (sides[:, i] / (sides[:, i] - sides[:, j]))[:, None] * (corners[:, j] - corners[:, i])
-        flat = np.stack([points @ across, points[:, 2]], axis=1)
-        starts[below[:, i] & ~below[:, j]] = flat[below[:, i] & ~below[:, j]]
-        ends[~below[:, i] & below[:, j]] = flat[~below[:, i] & below[:, j]]
-    z0 = float(starts[:, 1].mean())
-    (y1, z1), (y2, z2) = starts.T - [[0.0], [z0]], ends.T - [[0.0], [z0]]
-    cross = y1 * z2 - y2 * z1
-    area = float(cross.sum()) / 2
-    if abs(area) < 1e-9:
-        return Section(0.0, 0.0)
-    first = float((cross * (z1 + z2)).sum()) / 6
-    second = float((cross * (z1 * z1 + z1 * z2 + z2 * z2)).sum()) / 12
-    centre = first / area
-    heights = np.concatenate([z1, z2]) - centre
-    return Section(abs(second - area * centre * centre), float(np.abs(heights).max()))
-
-
-def _beam(mesh: TriMesh, axis: FloatArray, supports: Sequence[Support], force: float, modulus: float, *, anywhere: bool) -> Bent | None:
-    """Return stress and sag of a beam of measured sections under a force [N]; None if its supports do not hold it."""
-    ends = mesh.vertices @ axis
-    start, length = float(ends.min()), float(np.ptp(ends))
-    nodes = _nodes(length, supports)
-    lengths = np.diff(nodes)
-    sections = [section(mesh, axis, start + float(at)) for at in (nodes[:-1] + nodes[1:]) / 2]
-    if any(each.moment <= 0 for each in sections):
-        return None
-    stiff = modulus * np.array([each.moment for each in sections])
-    weights = np.array([each.edge / each.moment for each in sections])
-    both, pushes, clamps = (np.zeros(len(nodes), dtype=bool) for _ in range(3))
-    for row in supports:
-        there = (nodes >= row.low - 1e-6) & (nodes <= row.high + 1e-6)
-        both |= there & row.both_ways
-        pushes |= there & (not row.both_ways)
-        clamps |= there & (row.both_ways and row.high > row.low)
-    loads = []
-    if anywhere:
-        for node in range(len(nodes)):
-            load = np.zeros(2 * len(nodes))
-            load[2 * node] = force
-            loads.append((load, 0.0))
-    else:
-        loads.append((_even(nodes, force / length), force / length))
-    worst = Bent(0.0, 0.0)
-    for load, density in loads:
-        bent = _solved(lengths, stiff, weights, (load, density), both, pushes, clamps)
-        if bent is None:
-            return None
-        worst = Bent(max(worst.stress, bent.stress), max(worst.sag, bent.sag))
-    return worst
-
-
-def _nodes(length: float, supports: Sequence[Support]) -> FloatArray:
-    fixed = np.unique(np.round([0.0, length, *(end for row in supports for end in (row.low, row.high))], 6))
-    even = np.linspace(0.0, length, STATIONS + 1)
-    free = even[np.abs(even[:, None] - fixed[None]).min(axis=1) > length / (4 * STATIONS)]
-    nodes = np.sort(np.concatenate([fixed, free]))
-    return np.asarray(nodes[np.append(True, np.diff(nodes) > 1e-4 * length)])
-
-
-def _even(nodes: FloatArray, density: float) -> FloatArray:
-    """Return the forces and moments at the nodes that an even load [N/mm] stands for."""
-    load = np.zeros(2 * len(nodes))
-    for i, h in enumerate(np.diff(nodes)):
-        load[2 * i : 2 * i + 4] += density * np.array([h / 2, h * h / 12, h / 2, -h * h / 12])
-    return load
-
-
-def _stiffness(h: float, stiff: float) -> FloatArray:
-    """Return the stiffness of a piece of a beam for deflection and slope of both ends."""
-    rows = [
-        [12, 6 * h, -12, 6 * h],
-        [6 * h, 4 * h * h, -6 * h, 2 * h * h],
-        [-12, -6 * h, 12, -6 * h],
-        [6 * h, 2 * h * h, -6 * h, 4 * h * h],
-    ]
-    return np.asarray(stiff / h**3 * np.array(rows))
-
-
-def _solved(
-    lengths: FloatArray,
-    stiff: FloatArray,
-    weights: FloatArray,
-    loaded: tuple[FloatArray, float],
-    both: Held,
-    pushes: Held,
-    clamps: Held,
-) -> Bent | None:
-    """Return stress and sag; supports that only push let go one after the other where they would have to pull."""
-    load, density = loaded
-    count = len(load)
-    K = np.zeros((count, count))
-    for i, (h, k) in enumerate(zip(lengths, stiff, strict=True)):
-        K[2 * i : 2 * i + 4, 2 * i : 2 * i + 4] += _stiffness(float(h), float(k))
-    holding = both | pushes
-    scale = np.where(np.arange(count) % 2 == 0, 1.0, 1 / float(lengths.sum()))  # slopes by length, so that all are of one size
-    while True:
-        free = np.ones(count, dtype=bool)
-        free[::2], free[1::2] = ~holding, ~clamps
-        scaled = (K * np.outer(scale, scale))[np.ix_(free, free)]
-        if not holding.any() or (free.any() and np.linalg.cond(scaled) > SINGULAR):
-            return None
-        moved = np.zeros(count)
-        moved[free] = scale[free] * np.linalg.solve(scaled, scale[free] * load[free])
-        push = (load - K @ moved)[::2]  # of each support, upwards
-        least = int(np.where(holding & ~both, push, np.inf).argmin())
-        if not (holding & ~both).any() or push[least] >= -1e-9 * max(1.0, float(np.abs(push).max())):
-            break
-        holding[least] = False
-    stress = 0.0
-    for i, (h, k) in enumerate(zip(lengths, stiff, strict=True)):
-        even = density * np.array([h / 2, h * h / 12, h / 2, -h * h / 12])
-        ends = _stiffness(float(h), float(k)) @ moved[2 * i : 2 * i + 4] - even
-        stress = max(stress, float(weights[i]) * max(abs(float(ends[1])), abs(float(ends[3]))))
-    return Bent(stress, float(np.abs(moved[::2]).max()))

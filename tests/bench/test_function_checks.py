@@ -16,8 +16,9 @@ from articad.export.mjcf import write_mjcf
 from articad.geometry import Part, TriMesh, box, cylinder, tube
 from articad.kinematics.joints import Coupling, Joint
 from articad.plan.resolve import Fit
+from articad_bench.beams import section
 from articad_bench.function_checks import largest_effort, least_width
-from articad_bench.strength_checks import bending, level_tops, section
+from articad_bench.strength_checks import bending, level_tops
 from articad_bench.subject import Subject
 from tests.bench.test_cheats import made, solid
 from tests.bench.test_checks import form

@@ -1,0 +1,79 @@
+"""The nearest cheap answers to tasks of function and of stacks fail: an obvious first size, a motion that ends too early, sizes that fit without tolerances."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from articad_bench.reference import reference
+from articad_bench.subject import Subject
+from articad_bench.task import TASKS, tasks_in
+
+IN_CI = ("stack_shaft_two_bearings", "brief_wall_shelf_files")
+
+
+def sizes(part: str, **values: float) -> dict[str, float]:
+    return {f"parts.{part}.dimensions.{name}": value for name, value in values.items()}
+
+
+CHEAP: dict[str, tuple[dict[str, Any], str]] = {
+    # 19 mm chipboard, as it is sold
+    "brief_wall_shelf_files": ({key: 19 for name in ("lower", "middle", "upper") for key in sizes(f"board_{name}", high=19)}, "carries"),
+    # legs that fold half the way
+    "brief_step_stool_folding": ({"joints.swing_l.angle_deg": [-45, 0]}, "folds"),
+    # a base as wide as the bed
+    "brief_table_bedside": (sizes("base", long=800, deep=720), "passes"),
+    # struts that do not come back to the post
+    "brief_music_stand_flat": ({"joints.swing_l.angle_deg": [-10, 15]}, "folds"),
+    # a crank as short as a hand
+    "brief_table_lifting_crank": (sizes("crank", long=150), "effort"),
+    # battens of half the height
+    "brief_rack_crates": (
+        {key: 20 for name in ("low", "mid", "high") for side in ("front", "back") for key in sizes(f"rail_{name}_{side}", high=20)},
+        "carries",
+    ),
+    # a weight as heavy as the head alone
+    "brief_lamp_counterweight": (sizes("weight", long=30), "effort"),
+    # a thin lid
+    "brief_chest_blankets": (sizes("lid", thick=9), "carries"),
+    # a board of 12 mm
+    "brief_desk_wall_folding": (sizes("flap", thick=12), "carries"),
+    # a batten that ends before the leaf
+    "brief_trolley_leaf": (sizes("batten", long=200), "carries"),
+    # a plank of 28 mm
+    "brief_bench_plank": (sizes("plank", high=28), "carries"),
+    # a bar that only looks heavy
+    "brief_hatch_cellar": (sizes("bar", radius=25), "effort"),
+    # rails of 12 mm
+    "brief_rack_towels_swinging": (
+        {key: 12 for name in ("lower", "middle", "upper") for key in sizes(f"rail_{name}", high=12)},
+        "carries",
+    ),
+    # the sum of the sizes between shoulder and ring, and nothing left
+    "stack_shaft_two_bearings": (sizes("spacer", long=30.11), "stack"),
+    "stack_drawer_runners": (sizes("drawer", wide=361), "stack"),
+    # the fit that is used most
+    "stack_hinge_five_knuckles": ({"joints.swing.fit.name": "H7/g6"}, "stack"),
+    "stack_piston_pin": ({"joints.swing.fit.name": "H7/g6"}, "stack"),
+    "stack_plates_on_studs": ({key: 26.0 for i in range(1, 5) for key in sizes(f"bush_{i}", long=26.0)}, "stack"),
+    "stack_slide_gib": (sizes("bed", channel=45.0), "stack"),
+}
+
+
+def test_each_task_of_function_has_a_cheap_answer() -> None:
+    names = [task.name for _, task in tasks_in(TASKS) if task.name.startswith(("brief_", "stack_"))]
+
+    assert sorted(CHEAP) == names
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in IN_CI else pytest.mark.soak) for name in CHEAP])
+def test_the_nearest_cheap_answer_fails_where_it_is_cheap(name: str) -> None:
+    ((folder, task),) = tasks_in(TASKS, names=[name])
+    changes, kind = CHEAP[name]
+
+    cheap = Subject(reference(folder, task).with_changes(changes))
+
+    failed = [check for check in task.checks if check.kind == kind and not check.judge(cheap).ok]
+    assert failed
