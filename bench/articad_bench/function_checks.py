@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import pairwise, permutations, product
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from articad.arrays import FloatArray
+from articad.assembly import Assembly
 from articad.connectors import SE3
 from articad.errors import KinematicsError, LimitError
 from articad.kinematics.dynamics import GRAVITY
@@ -26,6 +27,7 @@ STEP: Final = 1e-3  # of a driver's range, over which energies are compared
 STILL: Final = 1e-9  # rad or mm: a joint that moves by less does not follow
 POSES: Final = {1: 13, 2: 7, 3: 5, 4: 4}  # values of each of so many drivers at which a product is measured; of more, both ends and rest
 MOST_DRIVERS: Final = 6  # that are combined with each other
+MOST_IN_TURN: Final = 3  # drivers that are moved one after the other, in every order
 TRIED: Final = 4  # poses of the least boxes that are tried for a way there
 
 
@@ -329,15 +331,27 @@ def least_width(outline: FloatArray) -> float:
 
 
 def comes_to(subject: Subject, q: FloatArray) -> bool:
-    """Return whether drivers bring it from rest to a configuration without a collision; sampled along the way."""
+    """Return whether drivers bring it from rest to a configuration without a collision, together or one after the other; sampled along the way."""
     bare = replace(subject.assembly, fits={})
     rest = np.array(bare.mechanism.rest)
     if not np.abs(q - rest).any():
         return True
     if not bare.check(q).ok:
         return False
+    moved = np.flatnonzero(q != rest)
+    orders = permutations(moved.tolist()) if len(moved) <= MOST_IN_TURN else iter([moved.tolist()])
+    return _is_way(bare, [rest, q]) or any(_is_way(bare, _in_turn(rest, q, order)) for order in orders)
+
+
+def _in_turn(rest: FloatArray, q: FloatArray, order: Sequence[int]) -> list[FloatArray]:
+    """Return the configurations through which drivers go that move one after the other."""
+    return [np.where(np.isin(np.arange(len(q)), order[:done]), q, rest) for done in range(len(order) + 1)]
+
+
+def _is_way(assembly: Assembly, points: Sequence[FloatArray]) -> bool:
     try:
-        bare.path(rest, q, clear=True)
+        for start, goal in pairwise(points):
+            assembly.path(start, goal, clear=True)
     except (KinematicsError, LimitError):
         return False
     return True

@@ -17,7 +17,7 @@ from articad.geometry import Part, TriMesh, box, cylinder, tube
 from articad.kinematics.joints import Coupling, Joint
 from articad.plan.resolve import Fit
 from articad_bench.beams import section
-from articad_bench.function_checks import largest_effort, least_width
+from articad_bench.function_checks import comes_to, largest_effort, least_width
 from articad_bench.strength_checks import bending, level_tops
 from articad_bench.subject import Subject
 from tests.bench.test_cheats import made, solid
@@ -381,3 +381,21 @@ def test_the_play_of_a_fit_is_that_of_its_limits_in_the_table() -> None:
     assert not form(row | {"mm": [0, 9]}).judge(Subject(of(*bodies, joints=turn))).ok
     loose = ("plate", tube(5.2, 20, 10)), bodies[1]
     assert not form(row | {"mm": [0, 9]}).judge(Subject(of(*loose, joints=turn, fits={"turn": Fit.named("H7/g6", 10)}))).ok
+
+
+@pytest.mark.slow
+@pytest.mark.soak
+def test_what_holds_another_back_goes_first() -> None:
+    """A bolt under a flap: the flap drops by 90 degrees only once the bolt is drawn, which random values of both hardly find."""
+    frame, flap_, bolt = (
+        placed(box(20, 100, 300), -30, 0, -150),
+        placed(box(200, 100, 10), 100.2, 0, 0),
+        placed(box(180, 20, 180), 100, 0, -95.2),
+    )
+    drop = joint("drop", "revolute", ("frame", LEVEL), ("flap", LEVEL), limits=[(0.0, math.pi / 2)])
+    draw = joint("draw", "slider", ("frame", LEVEL), ("bolt", LEVEL), limits=[(0.0, 61.0)])
+    subject = Subject(of(("frame", frame), ("flap", flap_), ("bolt", bolt), joints=[drop, draw]))
+
+    q = np.array([math.pi / 2, 61.0])
+    assert comes_to(subject, q)
+    assert not comes_to(subject, np.array([math.pi / 2, 50.0]))

@@ -33,6 +33,8 @@ CHEAP: dict[str, tuple[dict[str, Any], str]] = {
         {key: 20 for name in ("low", "mid", "high") for side in ("front", "back") for key in sizes(f"rail_{name}_{side}", high=20)},
         "carries",
     ),
+    # no more weight than a hand can lift
+    "brief_gate_picket_level": (sizes("weight", long=60), "effort"),
     # a weight as heavy as the head alone
     "brief_lamp_counterweight": (sizes("weight", long=30), "effort"),
     # a thin lid
@@ -56,7 +58,7 @@ CHEAP: dict[str, tuple[dict[str, Any], str]] = {
     # the fit that is used most
     "stack_hinge_five_knuckles": ({"joints.swing.fit.name": "H7/g6"}, "stack"),
     "stack_piston_pin": ({"joints.swing.fit.name": "H7/g6"}, "stack"),
-    "stack_plates_on_studs": ({key: 26.0 for i in range(1, 5) for key in sizes(f"bush_{i}", long=26.0)}, "stack"),
+    "stack_plates_on_studs": ({"parameters.bush.value": 26}, "stack"),
     "stack_slide_gib": (sizes("bed", channel=45.0), "stack"),
 }
 

@@ -177,7 +177,9 @@ def _in_the_way(_check: Check, subject: Subject) -> Subject:
     for driver in sorted(assembly.drivers, key=lambda driver: driver.joint in on_ground):  # no ghost in a bearing, if there is a choice
         q = _on_its_way(subject, driver)
         poses = dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
-        mover = next(joint.child for joint in assembly.joints if joint.name == driver.joint)
+        joint = next(joint for joint in assembly.joints if joint.name == driver.joint)
+        goes = np.abs(poses[joint.child].matrix - subject.rest[joint.child].matrix).max() > 1e-9
+        mover = joint.child if goes else joint.parent
         mover = (
             mover if mover in subject.shaped else next(name for name in subject.shaped if poses[name].distance_to(subject.rest[name]) > 1)
         )

@@ -1,0 +1,23 @@
+from build123d import Align, Box, Cylinder, Pos, Rot
+
+LOW = (Align.MIN, Align.MIN, Align.MIN)
+
+
+def board(wide, deep, high):
+    return Box(wide, deep, high, align=LOW)
+
+
+def bar_x(x0, x1, y, z, radius):
+    """Return a round bar along x."""
+    return Pos((x0 + x1) / 2, y, z) * Rot(0, 90, 0) * Cylinder(radius, x1 - x0)
+
+
+def block(x0, x1, y0, y1, z0, z1):
+    return Pos(x0, y0, z0) * Box(x1 - x0, y1 - y0, z1 - z0, align=LOW)
+
+
+strip_left = strip_right = bar = gib = board
+
+
+def bed(wide, deep, high, channel, depth):
+    return block(-wide / 2, wide / 2, 0, deep, 0, high) - block(-channel / 2, channel / 2, -1, deep + 1, high - depth, high + 1)
