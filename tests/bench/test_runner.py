@@ -326,6 +326,23 @@ def test_tasks_run_and_are_scored_in_processes_of_their_own(
     assert [row.task for row in rows_in(tmp_path / "asked")] == ["flap_0", "flap_1"]
 
 
+def test_a_repair_of_ours_is_passed_by_an_edit_that_mends_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    asked = tasks_in(names=["repair_bookcase"])
+    right = {"parts.back.dimensions.width": 800, "parts.back.dimensions.height": 900}
+    mended, half = (
+        json.dumps({"summary": "x", "touches": ["back"], "changes": changes})
+        for changes in (right, {"parts.back.dimensions.width": 800})
+    )
+
+    (row,) = run(asked, tmp_path / "right", lambda _task: Scripted({"edit/1": mended}))
+    (poor,) = run(asked, tmp_path / "half", lambda _task: Scripted({"edit/1": half}))
+
+    assert row.ok, row
+    assert not poor.ok
+    assert main(["bench", "list", "--task", "repair_bookcase"]) == 0
+    assert "20 calls, 800000 characters" in " ".join(capsys.readouterr().out.split())
+
+
 def test_a_task_of_the_wrong_form_is_refused_at_its_field(tmp_path: Path) -> None:
     (tmp_path / "task.json").write_text('{"schema": "articad.task/1", "name": "x", "kind": "soft", "product": "x", "checks": []}')
     with pytest.raises(ReadError, match=r"kind: .*articulated"):
