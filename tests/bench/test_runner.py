@@ -330,8 +330,7 @@ def test_a_repair_of_ours_is_passed_by_an_edit_that_mends_what_is_wrong(tmp_path
     asked = tasks_in(names=["repair_bookcase"])
     right = {"parts.back.dimensions.width": 800, "parts.back.dimensions.height": 900}
     mended, half = (
-        json.dumps({"summary": "x", "touches": ["back"], "changes": changes})
-        for changes in (right, {"parts.back.dimensions.width": 800})
+        json.dumps({"summary": "x", "touches": ["back"], "changes": changes}) for changes in (right, {"parts.back.dimensions.width": 800})
     )
 
     (row,) = run(asked, tmp_path / "right", lambda _task: Scripted({"edit/1": mended}))

@@ -90,14 +90,12 @@ def _asks_for_a_change(task: Task, begun: Assembly) -> None:
 
 
 def _refuses_another_change(task: Task, stage: int, before: Assembly, after: Assembly) -> None:
-    """Whoever changes one part more than was asked for does not pass."""
+    """Whoever changes one part more than was asked for, and those like it, does not pass."""
     (check,) = (check for check in task.stages[stage] if check.kind == "unchanged")
     kept = {part.mesh.digest for part in before.parts.values() if part.mesh is not None}
-    name = next(name for name, part in after.parts.items() if part.mesh is not None and part.mesh.digest in kept)
-    mesh = after.parts[name].mesh
-    assert mesh is not None
-    part = shaped_as(after.parts[name], mesh.scaled(1.01))
-    more = changed(after, [part if each.name == name else each for each in after.parts.values()])
+    mesh = next(part.mesh for part in after.parts.values() if part.mesh is not None and part.mesh.digest in kept)
+    alike = [part for part in after.parts.values() if part.mesh is not None and part.mesh.digest == mesh.digest]
+    more = changed(after, [shaped_as(part, mesh.scaled(1.01)) if part in alike else part for part in after.parts.values()])
     assert not check.judge(Subject(more, before=before)).ok
 
 
