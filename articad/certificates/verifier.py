@@ -353,7 +353,7 @@ class Checker:
             name: (np.array(f["turn"]), np.array(f["slide"]), any(f["turn"]), any(f["slide"])) for name, f in self.freedoms.items()
         }
         self.shells = functools.cache(lambda name: shells(self.meshes[name]["vertices"], self.meshes[name]["triangles"]))
-        self.lines, self.rows, self.ways = dict[Any, Any](), dict[Any, Any](), dict[Any, Any]()
+        self.lines, self.rows, self.ways, self.reached = dict[Any, Any](), dict[Any, Any](), dict[Any, Any](), dict[Any, Any]()
         self.linked = [f["name"] for name in certificate["linkage"] for f in self.joints[name]["freedoms"]]
         ways = ([*self.way(j["parent"], j["child"]), (j, False)] for j in self.joints.values() if j["loop"])
         self.loops = [(way, self.around(way)) for way in ways]
@@ -440,6 +440,15 @@ class Checker:
 
     def way(self, a: str, b: str, names: Any = None, *, whole: bool = True) -> Any:
         """Return the joints from a to b, each with whether it is crossed from parent to child: those named, or of the tree."""
+        key = a, None if names is None else frozenset(names)
+        if key not in self.reached:
+            self.reached[key] = self.reach(a, names)
+        ways = self.reached[key]
+        need(b in ways or not whole, f"no joints lead from {a} to {b}")
+        return ways.get(b)
+
+    def reach(self, a: str, names: Any) -> dict[str, list[Any]]:
+        """Return the way from a to each part that joints lead to: those named, or of the tree."""
         ways: dict[str, list[Any]] = {a: []}
         for part in (todo := [a]):
             for joint in self.joints.values():
@@ -447,8 +456,7 @@ class Checker:
                     if near == part and far not in ways and (not joint["loop"] if names is None else joint["name"] in names):
                         ways[far] = [*ways[part], (joint, forward)]
                         todo.append(far)
-        need(b in ways or not whole, f"no joints lead from {a} to {b}")
-        return ways.get(b)
+        return ways
 
     def together(self, a: str, b: str) -> bool:
         """Return whether no joint moves two parts against each other."""

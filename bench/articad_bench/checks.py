@@ -7,9 +7,8 @@ a part by its size. Each judgement says what was wanted and what was measured.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
-from itertools import combinations
 from typing import Annotated, Any, Final, Literal
 
 import numpy as np
@@ -22,12 +21,13 @@ from articad.interference.gauge import Gauge
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
-from articad_bench.check import Bounds, in_words
+from articad_bench.check import Bounds, Vector, in_words
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
 from articad_bench.function_checks import Effort, Folds, Passes, PutTogether
 from articad_bench.likeness_checks import Arranged, Handed, Matter
 from articad_bench.machined_checks import Machined, Toleranced
+from articad_bench.module_checks import Fitted, Ordered, Spaced, Turned
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
@@ -125,20 +125,9 @@ class PartSize(Check):
         return f"{in_words(self.number)} parts of {sides} mm within {100 * self.tolerance:g} %"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        sides = sorted(side for side in self.mm if side is not None)
-        found = [name for name in subject.shaped if self._in_some_frame(sides, subject, name)]
+        found = subject.of_size(self.mm, self.tolerance)
         sizes = ", ".join(f"{name} {_by(subject.extents(name))}" for name in subject.shaped[:12])
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({sizes})"
-
-    def _in_some_frame(self, sides: list[float], subject: Subject, name: str) -> bool:
-        return any(self._fits(sides, extents) for extents in subject.boxes(name))
-
-    def _fits(self, sides: list[float], extents: FloatArray) -> bool:
-        """Return whether some of the extents are these sides; both ascend, so that each is compared with its own."""
-        return any(
-            all(abs(extent - side) <= self.tolerance * side for side, extent in zip(sides, chosen, strict=True))
-            for chosen in combinations(extents.tolist(), len(sides))
-        )
 
 
 class Mass(Check):
@@ -320,6 +309,34 @@ class Travel(Check):
         moved = [_travel(subject, joint) for joint in self.joint.found(subject)]
         count = sum(self.by[0] <= travel <= self.by[1] for travel in moved)
         return self.number[0] <= count <= self.number[1], f"{count} ({', '.join(f'{travel:.4g}' for travel in moved) or 'no such joint'})"
+
+
+class Reaches(Check):
+    """A number of joints bring what they move so far toward a side [mm], seen from rest, while the drivers go over their ranges, one by one.
+
+    What a joint moves is the body beyond it, as `Moves` says; its centre of matter counts, and how far it comes along the vector `toward`.
+    """
+
+    kind: Literal["reaches"] = "reaches"
+    joint: JointWanted
+    toward: Vector
+    mm: Bounds
+    number: Bounds = (1, 999)
+
+    @property
+    def wanted(self) -> str:
+        return (
+            f"{in_words(self.number)} joints ({self.joint}) that bring their body {in_words(self.mm)} mm toward {in_numbers(self.toward)}"
+        )
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        joints = self.joint.found(subject)
+        bodies = {joint.name: _moved_bodies(subject, joint) for joint in joints}
+        reached = _reached(subject, {body for each in bodies.values() for body in each}, np.array(self.toward))
+        ways = [[reached[body] for body in bodies[joint.name]] for joint in joints]
+        count = sum(any(self.mm[0] <= mm <= self.mm[1] for mm in way) for way in ways)
+        told = ", ".join(" or ".join(f"{mm:.4g}" for mm in way) for way in ways[:12])
+        return self.number[0] <= count <= self.number[1], f"{count} ({told or 'no such joint'} mm)"
 
 
 class Moves(Check):
@@ -506,7 +523,12 @@ AnyCheck = Annotated[
     | Passes
     | Stack
     | Machined
-    | Toleranced,
+    | Toleranced
+    | Spaced
+    | Ordered
+    | Turned
+    | Reaches
+    | Fitted,
     Field(discriminator="kind"),
 ]
 
@@ -564,6 +586,29 @@ def _stroke_poses(subject: Subject, driver: str) -> Iterator[Any]:
         q = np.array(assembly.mechanism.rest)
         q[column] = point
         yield dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
+
+
+def _reached(subject: Subject, bodies: Collection[str], toward: FloatArray) -> dict[str, float]:
+    """Return how far the centre of matter of each body comes toward a side, seen from rest, the most that any driver makes it [mm]."""
+    parts = {body: [name for name in subject.shaped if subject.rigid[name] == body] for body in bodies}
+    weights, centres = {}, {}
+    for name in {name for members in parts.values() for name in members}:
+        mesh = subject.assembly.parts[name].mesh
+        assert mesh is not None
+        weights[name], centres[name] = abs(mesh.volume), mesh.solid_integrals()[1]
+    unit = toward / np.linalg.norm(toward)
+
+    def place(poses: Any, members: Sequence[str]) -> float:
+        return float(np.average([unit @ poses[name].apply(centres[name]) for name in members], weights=[weights[name] for name in members]))
+
+    held = {body: members for body, members in parts.items() if members}
+    rest = {body: place(subject.rest, members) for body, members in held.items()}
+    reached = dict.fromkeys(bodies, 0.0)
+    for driver in subject.assembly.drivers:
+        for poses in _stroke_poses(subject, driver.name):
+            for body, members in held.items():
+                reached[body] = max(reached[body], place(poses, members) - rest[body])
+    return reached
 
 
 def _trivial_loops(subject: Subject) -> int:

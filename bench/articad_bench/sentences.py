@@ -65,7 +65,7 @@ _SENTENCE: Final = re.compile(r"(?<=[.;:!?])\s+")
 _TURNING: Final = frozenset({JointType.REVOLUTE, JointType.SCREW, JointType.BALL, JointType.UNIVERSAL})
 
 _SUMS: Final = (("+", "", 1), ("+", "2 x ", 2), ("-", "", -1), ("-", "2 x ", -2))
-_LOOSE: Final = frozenset({"gap", "wall"})
+_LOOSE: Final = {"gap": "mm", "wall": "mm", "fitted": "play"}
 
 FOLLOWS: Final = {
     "solids": "all tasks: every part is one closed solid",
@@ -283,8 +283,8 @@ def holds(check: AnyCheck, number: Number, others: Sequence[Number]) -> bool:
     if any(_within(number, value) for value in _values(check)):
         return True
     if check.kind in _LOOSE and number.unit == "mm":  # play and walls are told as one number, and held to a range about it
-        low, high = _bounds(check)[0][1:]
-        return low <= number.value <= high
+        loose: tuple[float, float] = getattr(check, _LOOSE[check.kind])
+        return loose[0] <= number.value <= loose[1]
     ratio = getattr(check, "ratio", None)  # of two diameters, or of two numbers of teeth or turns
     return ratio is not None and any(
         each.text == number.text
@@ -345,6 +345,10 @@ def _lengths(row: Any, sides: Iterable[float | None]) -> list[Value]:
     return [("mm", (1 - row.tolerance) * side, (1 + row.tolerance) * side) for side in sides if side is not None]
 
 
+def _counts(*numbers: int) -> list[Value]:
+    return [("count", number, number) for number in numbers]
+
+
 def _bounds(row: Any) -> list[Value]:
     return [("mm", *row.mm)]
 
@@ -383,7 +387,14 @@ _MEASURES: Final[dict[str, Callable[[Any], list[Value]]]] = {
     "size": lambda row: _lengths(row, row.mm),
     "part_size": lambda row: _lengths(row, row.mm),
     **dict.fromkeys(("links", "lead", "square"), lambda row: _lengths(row, [row.mm])),
-    **dict.fromkeys(("rise", "level", "gap", "extent", "wall"), _bounds),
+    **dict.fromkeys(("rise", "level", "gap", "extent", "wall", "reaches"), _bounds),
+    "spaced": lambda row: [
+        *_lengths(row, (*row.mm, *row.pitch)),
+        *_counts(row.levels, *row.each, row.levels * row.each[0] if len(row.each) == 1 else sum(row.each)),
+    ],
+    "ordered": lambda row: _lengths(row, [side for sides in row.sizes for side in sides]),
+    "turned": lambda row: [*_lengths(row, row.mm), *_counts(*row.alike, sum(row.alike))],
+    "fitted": lambda row: [*_lengths(row, (row.diameter,)), ("mm", *row.play)],
     "straight": lambda row: [("mm", *row.mm), ("mm", row.off, row.off)],
     "travel": lambda row: [("deg" if row.joint.type in _TURNING else "mm", *row.by)],
     **dict.fromkeys(("holes", "studs"), _round_values),

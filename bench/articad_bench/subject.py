@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations
 from pathlib import Path
 from typing import Final
 
@@ -139,6 +140,19 @@ class Subject:
             rows = [np.sort(np.ptp(turned, axis=0)), *boxes_by_faces(mesh)]
             self._boxes[part] = np.array(rows)
         return self._boxes[part]
+
+    def of_size(self, mm: Sequence[float | None], tolerance: float) -> list[str]:
+        """Return the parts that have these sides within a share of them, in any order; None stands for any length [mm]."""
+        sides = sorted(side for side in mm if side is not None)
+
+        def fits(extents: FloatArray) -> bool:
+            """Return whether some of the extents are these sides; both ascend, so that each is compared with its own."""
+            return any(
+                all(abs(extent - side) <= tolerance * side for side, extent in zip(sides, chosen, strict=True))
+                for chosen in combinations(extents.tolist(), len(sides))
+            )
+
+        return [name for name in self.shaped if any(fits(extents) for extents in self.boxes(name))]
 
     @cached_property
     def _boxes(self) -> dict[str, FloatArray]:

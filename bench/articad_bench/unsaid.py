@@ -19,7 +19,23 @@ Asked = Literal["motion", "loop", "cone", "force", "fit"]
 or snapped together, declared fits."""
 
 _MOTION: Final = frozenset(
-    {"freedoms", "joints", "effort", "folds", "loops", "ratio", "rise", "travel", "straight", "level", "turns", "links", "gap", "moves"}
+    {
+        "freedoms",
+        "joints",
+        "effort",
+        "folds",
+        "loops",
+        "ratio",
+        "rise",
+        "travel",
+        "straight",
+        "level",
+        "turns",
+        "links",
+        "gap",
+        "moves",
+        "reaches",
+    }
 ) | {"made", "captive", "clear_in_motion", "certified", "simulates"}
 
 

@@ -182,10 +182,16 @@ def _with_edit(task: Task, number: int, **changes: Any) -> Task:
     return task.model_copy(update={"edits": tuple(edits)})
 
 
+COMMON: Final = "parts.py"  # builds the parts that have no script of their own
+
+
 def _write_reference(plan: AssemblyPlan, source: Path, target: Path) -> None:
     target.mkdir(parents=True)
     plan.save(target / PLAN_FILE)
-    shutil.copytree(source / "parts", target / "parts", ignore=shutil.ignore_patterns("__pycache__"))
+    if (source / "parts").is_dir():
+        shutil.copytree(source / "parts", target / "parts", ignore=shutil.ignore_patterns("__pycache__"))
+    if (source / COMMON).is_file():
+        shutil.copyfile(source / COMMON, target / COMMON)
 
 
 def _hold(checks: Sequence[AnyCheck], subject: Subject) -> None:

@@ -29,6 +29,7 @@ from tests.kinematics.linkages import at, joint
 pytestmark = pytest.mark.slow
 
 HINGE: dict[str, Any] = {"type": "revolute", "axis": [0, 0, 1]}
+DRAWER = [200, 484, 858]
 
 
 def bound(name: str, kind: str) -> dict[str, Any]:
@@ -95,6 +96,11 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("scissor_lift", {"kind": "folds", "into": [400, 400, 200]}),
     ("wardrobe", {"kind": "passes", "opening": [620, 1930]}),
     ("slider_crank", {"kind": "stack", "plays": [{"joint": {"type": "revolute"}, "times": 2}], "mm": [0.2, 0.5]}),
+    ("wardrobe", {"kind": "spaced", "mm": DRAWER, "axis": [0, 0, 1], "pitch": [203], "levels": 2}),
+    ("wardrobe", {"kind": "ordered", "sizes": [[48, 48, 132], DRAWER, [11, 11, 32.7]], "axis": [0, 0, 1]}),
+    ("wardrobe", {"kind": "turned", "mm": DRAWER, "alike": [2]}),
+    ("wardrobe", {"kind": "reaches", "joint": {"type": "slider"}, "toward": [0, -1, 0], "mm": [360, 365], "number": [2, 2]}),
+    ("slider_crank", {"kind": "fitted", "diameter": 16, "play": [0.2, 0.4], "number": [1, 1]}),
 ]
 
 

@@ -73,6 +73,19 @@ def passes(folder: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_reference_may_have_one_script_for_all_parts(tmp_path: Path) -> None:
+    folder = tray(tmp_path)
+    scripts = {name: folder / "reference" / "parts" / f"{name}.py" for name in ("tray", "lid")}
+    common = "\n\n".join(file.read_text().replace("def build(", f"def {name}(") for name, file in scripts.items())
+    (folder / "reference" / "parts.py").write_text(common)
+    for file in scripts.values():
+        file.unlink()
+    scripts["lid"].parent.rmdir()
+
+    passes(make_variant(folder, read_task(folder), 1, tmp_path / "made", cache=shared_cache()).folder)
+
+
+@pytest.mark.slow
 def test_a_seed_gives_a_task_of_its_own_and_no_answer_to_another_seed_passes(tmp_path: Path) -> None:
     folder = tray(tmp_path)
     first, again, second = (

@@ -397,6 +397,21 @@ def _undeclared(check: Check, subject: Subject) -> Subject:
     return Subject(changed(_larger(check, subject).assembly, fits={}))
 
 
+def _one_turned_round(check: Check, subject: Subject) -> Subject:
+    """One of the parts that are meant is upside down and back to front."""
+    name = subject.of_size(check.mm, check.tolerance)[0]  # type: ignore[attr-defined]
+    mesh = subject.assembly.parts[name].mesh
+    assert mesh is not None
+    middle = SE3.from_translation(mesh.bounds.mean(axis=0))
+    turned = mesh
+    for turn in (SE3.rot_x(np.pi), SE3.rot_z(np.pi), SE3.rot_y(np.pi / 2)):  # a shape may be its own image by one of them
+        turned = turned.transformed(middle @ turn @ middle.inverse())
+        found = _with_mesh(subject, name, turned)
+        if not check.judge(found).ok:
+            return found
+    return found
+
+
 VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "parts": _bare,
     "freedoms": _welded,
@@ -428,6 +443,11 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "square": _larger,
     "machined": _larger,
     "toleranced": _larger,
+    "spaced": _larger,
+    "ordered": _larger,
+    "turned": _one_turned_round,
+    "reaches": _short,
+    "fitted": _larger,
     "arranged": _one_aside,
     "handed": _mirror_image,
     "unchanged": _all_new,

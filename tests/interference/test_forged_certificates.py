@@ -282,3 +282,25 @@ def test_a_piece_of_no_length_does_not_hold_the_checker(loop: Certificate) -> No
     checker = checker_of(loop, {key: np.array(value) for key, value in proof.items()})
     with pytest.raises(Refuted, match="not followed"):
         checker.stretch(("crank",), ((0.0, 1.0),))
+
+
+def test_ways_are_searched_once_from_each_part_and_not_for_every_two(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twelve carts on one rail are 78 pairs of parts, and 13 parts from which ways over the tree begin."""
+    names = [f"cart_{number}" for number in range(12)]
+    meshes = {"rail": box(10, 10, 10)} | {name: box(10, 10, 10).transformed(at(0, 30 * (i + 1))) for i, name in enumerate(names)}
+    joints = [
+        joint(f"run_{name}", "slider", "rail", name, at_parent=ALONG_X, at_child=ALONG_X, lower=(-5.0,), upper=(5.0,)) for name in names
+    ]
+    searched: list[tuple[Checker, str]] = []
+    reach = Checker.reach
+
+    def counted(self: Checker, a: str, names: Any) -> Any:
+        if names is None:
+            searched.append((self, a))
+        return reach(self, a, names)
+
+    monkeypatch.setattr(Checker, "reach", counted)
+    certificate = proven(meshes, joints, deflection=0.01, pairs=False)
+
+    assert len(certificate.pairs) == 78
+    assert len(searched) == len(set(searched)) >= len(meshes)
