@@ -56,7 +56,10 @@ CHEAP: dict[str, tuple[dict[str, Any], str]] = {
     "stack_shaft_two_bearings": (sizes("spacer", long=30.11), "stack"),
     "stack_drawer_runners": (sizes("drawer", wide=361), "stack"),
     # the fit that is used most
-    "stack_hinge_five_knuckles": ({"joints.swing.fit.name": "H7/g6"}, "stack"),
+    "stack_hinge_five_knuckles": (
+        {"joints.swing.fit.name": "H7/g6"} | sizes("pin", radius=3.996) | sizes("leaf_fixed", bore=7.992) | sizes("ring", inner=3.996),
+        "stack",
+    ),
     "stack_piston_pin": ({"joints.swing.fit.name": "H7/g6"}, "stack"),
     "stack_plates_on_studs": ({"parameters.bush.value": 26}, "stack"),
     "stack_slide_gib": (sizes("bed", channel=45.0), "stack"),
