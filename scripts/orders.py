@@ -153,6 +153,8 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
 LOOKED: Final[Mapping[str, str]] = {
     "run:drill": "The pinion is one piece with its shaft and wider than the closed bores of the head on both sides of it. The belt is a closed loop between two flanges; "
     "a person stretches it over them, which the plan does not state.",
+    "run:metronome": "The hinge pin is one piece with the two ears of the housing and passes through the closed knuckle of the cover. Key and bell knob are one piece each, with a head outside "
+    "and a collar inside that are wider than the housing's closed bores.",
     "run:mirrored": "The rail is longer than the space between the sides of the carcass, which is one piece, and its ends are in blind sockets; the doors' pins, above and below, "
     "are in blind holes of top and shelf, as the plan says.",
     "run:phone_holder": "The holder's ball is in a closed socket of the arm that reaches over more than half of it; a workshop snaps it in, or makes the socket of two halves.",
@@ -167,12 +169,18 @@ LOOKED: Final[Mapping[str, str]] = {
     "scissor_lift": "Each frame is one piece of two arms and their cross rods, and the rods lie in closed eyes of the other frames, inside its own two arms.",
     "slider_crank": "The rod's eye is one closed piece about the crank pin, and the piston stays in its cylinder at every angle of the crank, so that the eye "
     "never gets past the pin.",
+    "stewart_platform": "Each cross is one piece, and its four journals lie in closed eyes of the two forks; each ball is in a closed socket of the platform that reaches over more than half of it.",
+    "table_football": "Each rod is one piece with two collars between the side walls, which are wider than the closed bores; the walls are one piece. The score bar is one piece with posts at both ends "
+    "that are larger than the bead's hole.",
     "task:cardan_shaft": "Each cross is one piece, and its four journals lie in closed eyes of the two forks; a workshop makes the bearings as cups.",
+    "task:delta_robot": "The pins of base and platform are one piece with the lugs on both sides of them, and pass through closed eyes; each elbow and wrist is a cross of one piece, with four journals "
+    "in closed eyes.",
     "task:differential_axle": "The cage is one closed piece with the pin of the spider gears, between side gears that are one piece with axle and wheel.",
     "task:engine_inline_three": "The crankshaft is one piece, and each rod has a closed eye about a crank pin between two cheeks; a workshop splits the eye.",
     "task:engine_radial": "Each rod comes off its pin to the front only, and is on a pin of its piston, which leaves its closed cylinder along that cylinder only.",
     "task:jack_scissor": "The screw turns on a neck in the bore of the trunnion, between its thread and its collar, which are wider; all is one piece.",
     "task:orrery_three": "The post is one piece with the base and with the sun at its top, which is wider than the eyes of the planets' arms on the post.",
+    "task:platform_six_legs": "Each cross is one piece with four journals in closed eyes of two forks; each ball is in a closed socket that reaches over more than half of it.",
     "task:sarrus_lifter": "Each leaf is between two lugs whose pins reach into its eye from both sides; lugs, pins and plate are one piece, below as above.",
     "task:scotch_yoke_pump": "The crank pin is one piece with the disc below the block and with a head above it that is wider than the block's bore; the yoke's rods end "
     "in posts on both sides, which are one piece with the base.",
@@ -184,6 +192,7 @@ LOOKED: Final[Mapping[str, str]] = {
     "bed.",
     "task:tongs_lazy": "The slide leaves the lower end of its rod only below the height at which the tongs, drawn out, stop: there the pin of `falling` meets the eye of `rising`. "
     "`falling` is between `rising` and the slide, whose pins are in its eyes from both sides.",
+    "task:umbrella_frame": "The pins of crown and runner are one piece with the walls of the slots on both sides of them, and pass through closed eyes of the ribs and stretchers.",
     "task:steering_rack": "The rod on which the rack bar slides passes through a closed bore and ends in posts on both sides, which are one piece with the chassis.",
 }
 """What was seen on the picture of each product that no order puts together."""
