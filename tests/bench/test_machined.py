@@ -133,7 +133,7 @@ NEAR: dict[str, tuple[dict[str, float], ...]] = {
     "sheet_clevis_rod": ({"eye.bore_diameter": 10.2, "fork.bore_diameter": 10.2}, {"pin.grease_hole_depth": 60}, {"eye.cross_hole_x": 64}),
     "photo_trolley_sack": ({"wheel_left.diameter": 200}, {"frame.height": 1000}),
     "photo_swing_garden": ({"bench.drop": 1000}, {"stand.spread": 400}),
-    "photo_barrier_boom": ({"cabinet.height": 860}, {"boom.weight_length": 60}),
+    "photo_barrier_boom": ({"cabinet.height": 1300}, {"boom.weight_length": 60}),
     "photo_chest_blanket": ({"lid.depth": 700}, {"lid.thickness": 120}),
     "photo_mill_pepper": ({"body.foot_diameter": 44}, {"crank.dome_diameter": 30}),
     "photo_cabinet_card": ({"drawer.width": 150}, {"drawer.height": 70}),
