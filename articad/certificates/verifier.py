@@ -353,7 +353,8 @@ class Checker:
             name: (np.array(f["turn"]), np.array(f["slide"]), any(f["turn"]), any(f["slide"])) for name, f in self.freedoms.items()
         }
         self.shells = functools.cache(lambda name: shells(self.meshes[name]["vertices"], self.meshes[name]["triangles"]))
-        self.lines, self.rows, self.ways, self.reached = dict[Any, Any](), dict[Any, Any](), dict[Any, Any](), dict[Any, Any]()
+        self.reach, self.line, self.stretch = functools.cache(self.reached), functools.cache(self.pieces), functools.cache(self.stretched)
+        self.ways = dict[Any, Any]()
         self.linked = [f["name"] for name in certificate["linkage"] for f in self.joints[name]["freedoms"]]
         ways = ([*self.way(j["parent"], j["child"]), (j, False)] for j in self.joints.values() if j["loop"])
         self.loops = [(way, self.around(way)) for way in ways]
@@ -440,14 +441,11 @@ class Checker:
 
     def way(self, a: str, b: str, names: Any = None, *, whole: bool = True) -> Any:
         """Return the joints from a to b, each with whether it is crossed from parent to child: those named, or of the tree."""
-        key = a, None if names is None else frozenset(names)
-        if key not in self.reached:
-            self.reached[key] = self.reach(a, names)
-        ways = self.reached[key]
+        ways = self.reach(a, None if names is None else frozenset(names))
         need(b in ways or not whole, f"no joints lead from {a} to {b}")
         return ways.get(b)
 
-    def reach(self, a: str, names: Any) -> dict[str, list[Any]]:
+    def reached(self, a: str, names: Any) -> dict[str, list[Any]]:
         """Return the way from a to each part that joints lead to: those named, or of the tree."""
         ways: dict[str, list[Any]] = {a: []}
         for part in (todo := [a]):
@@ -688,41 +686,37 @@ class Checker:
         near, nothing = REST * (np.arange(len(names)) >= count), np.zeros(len(names))
         return [(np.stack([at[:count]] * 2, axis=1), at, still, near, (at, np.zeros((count, *still.shape)), near, nothing))]
 
-    def line(self, drivers: tuple[str, ...]) -> Any:
+    def pieces(self, drivers: tuple[str, ...]) -> Any:
         """Return pieces of drivers' ranges, all on the branch of the rest pose, and how ranges are split into them; by their ends."""
-        if drivers not in self.lines:
-            names, key = self.followers(drivers), "+".join(drivers)
-            found = self.begin(names, len(drivers))
-            ends, values, wide, others = (self.proof[f"{key}.{what}"] for what in ("ends", "values", "wide", "other"))
-            need(len(ends) == len(values) == len(wide) == len(others), "a piece of a driver's range is missing")
-            for start in range(0, len(ends), TUBES):
-                some = slice(start, start + TUBES)
-                bounds = self.enclosures(names, ends[some].reshape(-1, len(drivers), 2), values[some])
-                for row, other in zip(self.held(names, bounds, wide[some]), others[some], strict=True):
-                    self.join(found, names, row, other)
-            pieces = {boxed(row[0]): row for row in found[1:]}
-            boxes, cuts, places = (self.proof.get(f"{key}.{what}", np.empty(0)) for what in ("boxes", "cuts", "at"))
-            parted = zip(map(boxed, boxes.reshape(-1, len(drivers), 2)), zip(cuts.tolist(), places.tolist(), strict=True), strict=True)
-            self.lines[drivers] = pieces, dict(parted)
-        return self.lines[drivers]
+        names, key = self.followers(drivers), "+".join(drivers)
+        found = self.begin(names, len(drivers))
+        ends, values, wide, others = (self.proof[f"{key}.{what}"] for what in ("ends", "values", "wide", "other"))
+        need(len(ends) == len(values) == len(wide) == len(others), "a piece of a driver's range is missing")
+        for start in range(0, len(ends), TUBES):
+            some = slice(start, start + TUBES)
+            bounds = self.enclosures(names, ends[some].reshape(-1, len(drivers), 2), values[some])
+            for row, other in zip(self.held(names, bounds, wide[some]), others[some], strict=True):
+                self.join(found, names, row, other)
+        pieces = {boxed(row[0]): row for row in found[1:]}
+        boxes, cuts, places = (self.proof.get(f"{key}.{what}", np.empty(0)) for what in ("boxes", "cuts", "at"))
+        parted = zip(map(boxed, boxes.reshape(-1, len(drivers), 2)), zip(cuts.tolist(), places.tolist(), strict=True), strict=True)
+        return pieces, dict(parted)
 
-    def stretch(self, drivers: tuple[str, ...], box: Any) -> Any:
+    def stretched(self, drivers: tuple[str, ...], box: Any) -> Any:
         """Return value, rates and distance by coordinate, over ranges of drivers: of all pieces into which these are split."""
         pieces, parted = self.line(drivers)
-        if (drivers, box) not in self.rows:
-            todo, found = [box], []
-            while todo:
-                one = todo.pop()
-                need(one in pieces or one in parted, f"{', '.join(drivers)} not followed over {np.round(box, 9).tolist()}")
-                if one in pieces:
-                    found.append(one)
-                    continue
-                cut, place = parted[one]
-                need(one[cut][0] < place < one[cut][1], "a part of the range is missing")
-                todo += [(*one[:cut], half, *one[cut + 1 :]) for half in ((one[cut][0], place), (place, one[cut][1]))]
-            middle, slopes, near = joined(np.array(found), [pieces[one][1:4] for one in found])
-            self.rows[drivers, box] = dict(zip(self.followers(drivers), zip(middle, slopes.T, near, strict=True), strict=True))
-        return self.rows[drivers, box]
+        todo, found = [box], []
+        while todo:
+            one = todo.pop()
+            need(one in pieces or one in parted, f"{', '.join(drivers)} not followed over {np.round(box, 9).tolist()}")
+            if one in pieces:
+                found.append(one)
+                continue
+            cut, place = parted[one]
+            need(one[cut][0] < place < one[cut][1], "a part of the range is missing")
+            todo += [(*one[:cut], half, *one[cut + 1 :]) for half in ((one[cut][0], place), (place, one[cut][1]))]
+        middle, slopes, near = joined(np.array(found), [pieces[one][1:4] for one in found])
+        return dict(zip(self.followers(drivers), zip(middle, slopes.T, near, strict=True), strict=True))
 
     def check_range(self, name: str, low: float, high: float, *, is_driver: bool) -> None:
         """Refute a range that does not cover a coordinate's motion: for an endless one, a turn, or the period of its followers."""

@@ -292,14 +292,14 @@ def test_ways_are_searched_once_from_each_part_and_not_for_every_two(monkeypatch
         joint(f"run_{name}", "slider", "rail", name, at_parent=ALONG_X, at_child=ALONG_X, lower=(-5.0,), upper=(5.0,)) for name in names
     ]
     searched: list[tuple[Checker, str]] = []
-    reach = Checker.reach
+    reach = Checker.reached
 
     def counted(self: Checker, a: str, names: Any) -> Any:
         if names is None:
             searched.append((self, a))
         return reach(self, a, names)
 
-    monkeypatch.setattr(Checker, "reach", counted)
+    monkeypatch.setattr(Checker, "reached", counted)
     certificate = proven(meshes, joints, deflection=0.01, pairs=False)
 
     assert len(certificate.pairs) == 78
