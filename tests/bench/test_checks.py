@@ -101,6 +101,11 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("wardrobe", {"kind": "turned", "mm": DRAWER, "alike": [2]}),
     ("wardrobe", {"kind": "reaches", "joint": {"type": "slider"}, "toward": [0, -1, 0], "mm": [360, 365], "number": [2, 2]}),
     ("slider_crank", {"kind": "fitted", "diameter": 16, "play": [0.2, 0.4], "number": [1, 1]}),
+    (
+        "slider_crank",
+        {"kind": "machined", "cm3": 2.3554, "rounds": [[10, 40, False, False, 0, 0, 0, 0, 1, 0], [5, 40, True, False, 0, 0, 0, 0, 1, 0]]},
+    ),
+    ("slider_crank", {"kind": "toleranced", "nominal": 10, "bore": "D10", "pin": "h9", "number": [1, 9]}),
 ]
 
 
