@@ -474,10 +474,8 @@ def test_holes_apart_are_asked_about_once_and_may_stay(tmp_path: Path) -> None:
 def test_a_hole_that_departs_from_its_order_is_asked_of_its_author_once(tmp_path: Path) -> None:
     llm = gripper(finger_on_a_jaw(), ELSEWHERE, part__finger__2=fenced(FINGER))
     run = made(tmp_path, llm)
-    assert [step for step in llm.steps if step.startswith(("design", "part"))] == [
-        "design/1",
-        "part/jaw/1",
-        "part/finger/1",
-        "part/finger/2",
-    ]
+    asked_of = [step for step in llm.steps if step.startswith(("design", "part"))]
+    assert asked_of[0] == "design/1"
+    assert sorted(asked_of[1:3]) == ["part/finger/1", "part/jaw/1"], "both authors are asked side by side"
+    assert asked_of[3:] == ["part/finger/2"]
     assert [finding["code"] for finding in (run.verdict() or {})["findings"]] == []
