@@ -30,6 +30,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
@@ -246,6 +247,11 @@ class BudgetError(AgentError):
     def __init__(self, message: str, *, spent: str, findings: Iterable[Finding] = ()) -> None:
         self.spent = spent
         super().__init__(message, findings=findings)
+
+    def after(self, failure: AgentError) -> BudgetError:
+        """Return this error with the reason why the last attempt within the budget failed."""
+        findings = [replace(finding, message=f"{finding.message} {failure}") for finding in self.findings]
+        return BudgetError(f"{self} {failure}", spent=self.spent, findings=findings)
 
 
 class TransportError(AgentError):

@@ -60,7 +60,7 @@ def _tests(*more: str) -> Outcome:
     with tempfile.TemporaryDirectory() as folder:
         report = Path(os.environ.get("ARTICAD_TEST_REPORT", Path(folder, "report.xml")))
         selection = ["-m", "not crash and not fuzz and not supply and not corpus and not soak and not engines_all and not freecad_next"]
-        options = ["-q", "-n", jobs, "--durations=10", "--hypothesis-profile=ci", f"--junit-xml={report}", *more]
+        options = ["-q", "-n", jobs, "--durations=60", "--hypothesis-profile=ci", f"--junit-xml={report}", *more]
         environment = ENVIRONMENT | {"ARTICAD_CACHE": str(_cache())}
         done = subprocess.run([PYTHON, "-m", "pytest", *selection, *options], cwd=ROOT, env=environment, check=False)
         if not report.is_file():

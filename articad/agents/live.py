@@ -12,7 +12,8 @@ import os
 import random
 import re
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, Final
 from urllib.parse import urlsplit
 
@@ -21,7 +22,7 @@ import numpy as np
 from articad.agents.calls import DESCRIBE_S, Calls
 from articad.agents.llm import Image, Message, Meter, Reply, Request, Text, Usage, require_open_port, transport_error
 from articad.aliases import Json
-from articad.errors import TransportError
+from articad.errors import BudgetError, TransportError
 from articad.memory.embedding import FloatArray, normalised
 
 DEFAULT_MODEL: Final = "gemini/gemini-3-flash-preview"  # the paper's backbone: it accepts images and schemas, and its price is known
@@ -136,7 +137,7 @@ class LiteLLM:
             if "error" not in answer:
                 return self._read(answer, model)
             if not self._learned(model, answer["error"]["text"], arguments, request, blind=blind):
-                raise self._failure(answer["error"], model, 1)
+                raise self._failure(answer["error"], model, 1, self._timeout)
 
     def vectors(self, texts: Sequence[str], meter: Meter | None = None) -> list[list[float]]:
         """Return the vector of each text from an embedding model. A closed port does not forbid this: vectors decide nothing.
@@ -153,7 +154,7 @@ class LiteLLM:
         for start in range(0, len(texts), _BATCH):
             answer = self._patiently("embed", self._model, {}, meter or Meter(), texts=list(texts[start : start + _BATCH]))
             if "error" in answer:
-                raise self._failure(answer["error"], self._model, 1)
+                raise self._failure(answer["error"], self._model, 1, self._timeout)
             rows += answer["rows"]
         self._sizes |= {len(row) for row in rows}
         if len(self._sizes) > 1:
@@ -184,8 +185,10 @@ class LiteLLM:
             BudgetError: If the meter allows no further call.
         """
         arguments = {"model": model} | arguments | ({} if self._api_base is None else {"api_base": self._api_base})
+        failed: TransportError | None = None
         for number in range(1, self._tries + 1):
-            seconds = min(self._timeout, meter.begin())
+            with _saying_why(failed):
+                seconds = min(self._timeout, meter.begin())
             try:
                 answer = self._calls.ask(do, seconds, arguments=arguments, is_local=self._is_local, **more)
             except OSError as error:
@@ -193,11 +196,13 @@ class LiteLLM:
             failure = answer.get("error")
             if failure is None or failure["kind"] == "form":
                 return answer
+            failed = self._failure(failure, model, number, seconds)
             is_passing = failure["kind"] not in _FINAL_KINDS and (failure["kind"] in _RETRIED_KINDS or failure["status"] in _RETRIED_STATUS)
             pause = _pause(failure, number) if is_passing and number < self._tries else 0.0
-            meter.require(pause)  # a call that was ended by the budget is reported as such
+            with _saying_why(failed):
+                meter.require(pause)  # a call that was ended by the budget is reported as such
             if not is_passing or number == self._tries:
-                raise self._failure(failure, model, number)
+                raise failed
             self._sleep(pause)
         raise AssertionError("the last try either answers or raises")
 
@@ -282,13 +287,13 @@ class LiteLLM:
 
     # ------------------------------------------------------------------ failures
 
-    def _failure(self, failure: Json, model: str, number: int) -> TransportError:
-        """Return the error of a call that failed."""
+    def _failure(self, failure: Json, model: str, number: int, seconds: float) -> TransportError:
+        """Return the error of a call that failed: its last attempt had so many seconds."""
         kind, status = failure["kind"], failure["status"]
         if kind == "key":
             return self._key_error(model, "was refused by the provider")
         if kind == "late":
-            what = f"did not answer within {self._timeout:g} s"
+            what = f"did not answer within {seconds:.3g} s"
         elif kind == "empty":
             what = "gave an empty answer"
         elif kind == "redirect":
@@ -346,6 +351,15 @@ def _require_address(address: str) -> None:
     if not is_valid:
         message = f"{without_secrets(address)!r} is not the address of an endpoint."
         raise transport_error("E_TRANSPORT", message, "Write it as http://127.0.0.1:8000/v1.")
+
+
+@contextmanager
+def _saying_why(failed: TransportError | None) -> Iterator[None]:
+    """Add to the error of a spent budget why the last attempt failed, if there was one."""
+    try:
+        yield
+    except BudgetError as error:
+        raise error if failed is None else error.after(failed) from None
 
 
 def _no_calls(problem: object) -> TransportError:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import re
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -131,6 +133,24 @@ def test_each_try_is_a_call_of_the_budget() -> None:
         with pytest.raises(BudgetError, match="3 calls"):
             budget.complete(QUESTION)
         assert endpoint.requests == budget.calls == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "limits", "why"),
+    [
+        ("hang", {"minutes": 1 / 60}, r"openai/x did not answer within (0\.\d+|1) s, after 1 attempt"),
+        ("429 with a long Retry-After", {"minutes": 1 / 60}, "openai/x failed with status 429, after 1 attempt"),
+        ("429 with a long Retry-After", {"calls": 2}, "openai/x failed with status 429, after 2 attempts"),
+    ],
+)
+def test_a_spent_budget_says_why_the_last_attempt_failed(name: str, limits: dict[str, Any], why: str) -> None:
+    with hostile(MISBEHAVIOURS[name]) as endpoint:
+        budget = Budget(LiteLLM("x", api_base=endpoint.address, sleep=lambda _: None), **limits)
+        with pytest.raises(BudgetError, match=why) as caught:
+            budget.complete(QUESTION)
+        (finding,) = caught.value.findings
+        assert re.search(why, finding.message)
+        assert finding.code == "E_BUDGET"
 
 
 @pytest.mark.parametrize("status", ["301 Moved", "302 Found", "303 See Other", "307 Temporary Redirect", "308 Permanent Redirect"])
