@@ -17,16 +17,11 @@ import pytest
 
 from articad.assembly import Assembly
 from articad.connectors import SE3
-from articad.export.mjcf import write_mjcf
-from articad.export.urdf import write_urdf
-from articad.importers.mjcf import read_mjcf
-from articad.importers.urdf import read_urdf
 from articad.kinematics.joints import Joint, JointLimits, JointType
-from articad_bench.cheat_run import COSTLY
 from articad_bench.reference import reference
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, Task, tasks_in
-from articad_bench.unsaid import Asked, asked_for, unsaid
+from tests.bench.forms import FORMS, Form, as_file, refused, sayable
 from tests.bench.wrong import changed, shaped_as
 
 ALL = {task.name: (folder, task) for folder, task in tasks_in(TASKS) if task.given is None}
@@ -139,11 +134,6 @@ def names_no_level_direction(task: Task) -> bool:
 WAYS: dict[str, Callable[[Assembly], Assembly]] = {"framed": framed, "renamed": renamed, "exchanged": exchanged}
 
 
-def refused(task: Task, subject: Subject) -> list[str]:
-    """Return what the checks say that do not hold, but for those that take minutes."""
-    return [str(judged) for check in task.checks if check.kind not in COSTLY and not (judged := check.judge(subject)).ok]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", NAMES)
@@ -163,18 +153,8 @@ def test_a_reference_passes_turned_where_no_level_direction_is_asked_for(name: s
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("form", ["urdf", "mjcf"])
-def test_a_reference_passes_as_a_file_of_another_tool_but_for_what_the_format_cannot_state(name: str, form: str, tmp_path: Path) -> None:
-    """Checks are left out by the rules of `articad_bench.unsaid` alone."""
-    task, assembly = ALL[name][1], rested(built(name))
-    if form == "urdf":
-        files = write_urdf(assembly, collision="solid").write(tmp_path)
-    else:
-        files = write_mjcf(assembly, collision="solid", actuators="position").write(tmp_path)
-    (file,) = (path for path in files if path.suffix in {".urdf", ".xml"})
-    read: Callable[..., Assembly] = {"urdf": read_urdf, "mjcf": read_mjcf}[form]
-    loops: set[Asked] = {"loop"} if assembly.mechanism.loop_joints else set()
-    left_out = unsaid(form, asked_for(task) | loops)
-    judged = task.model_copy(update={"checks": tuple(check for check in task.checks if check.kind not in left_out)})
+@pytest.mark.parametrize("form", FORMS)
+def test_a_reference_passes_as_a_file_of_another_tool_but_for_what_the_format_cannot_state(name: str, form: Form, tmp_path: Path) -> None:
+    assembly = rested(built(name))
 
-    assert refused(judged, Subject(read(file, metadata=False, fuse=True))) == []
+    assert refused(sayable(ALL[name][1], assembly, form), Subject(as_file(assembly, form, tmp_path))) == []

@@ -1,0 +1,63 @@
+"""Second solutions: products that somebody made of the text of a task alone, in another construction than the reference.
+
+A check that refuses one refuses what the text allows. Each is a folder of `tests/bench/second`, named after its task, with `plan.json` and
+`parts/`; it was made without a look at the reference or at the rows of `task.json`.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+import pytest
+
+from articad.assembly import Assembly
+from articad_bench.reference import given, reference
+from articad_bench.subject import Subject
+from articad_bench.task import TASKS, tasks_in
+from tests.bench.forms import FORMS, Form, as_file, refused, sayable
+from tests.bench.test_invariance import rested
+
+SECOND: Final = Path(__file__).with_name("second")
+ALL: Final = {task.name: (folder, task) for folder, task in tasks_in(TASKS)}
+IN_CI: Final = frozenset[str]()
+NAMES: Final = [
+    pytest.param(folder.name, marks=() if folder.name in IN_CI else pytest.mark.soak)
+    for folder in sorted(SECOND.iterdir())
+    if folder.is_dir()
+]
+
+
+@cache
+def second(name: str) -> Assembly:
+    """Build a second solution as a reference is built."""
+    return reference(SECOND / name, ALL[name][1].model_copy(update={"reference": ""}))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_a_second_solution_passes_every_check(name: str) -> None:
+    folder, task = ALL[name]
+    wrong = [str(judged) for judged in task.judge(Subject(second(name), before=given(folder, task))) if not judged.ok]
+
+    assert wrong == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_it_is_another_construction(name: str) -> None:
+    """Most of its solids are not those of the reference."""
+    theirs = {part.mesh.digest for part in reference(*ALL[name]).parts.values() if part.mesh is not None}
+    ours = [part.mesh.digest for part in second(name).parts.values() if part.mesh is not None]
+
+    assert sum(digest in theirs for digest in ours) < len(ours) / 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("name", NAMES)
+def test_it_passes_as_a_file_of_another_tool(name: str, form: Form, tmp_path: Path) -> None:
+    assembly = rested(second(name))
+
+    assert refused(sayable(ALL[name][1], assembly, form), Subject(as_file(assembly, form, tmp_path))) == []
