@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,11 +19,12 @@ from articad.errors import ArticadError
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.processes import scratch
 from articad_bench.bindings import DETAIL
-from articad_bench.cheats import CHEATS, cheats_of
+from articad_bench.cheats import CHEATS
 from articad_bench.likeness_checks import handedness
-from articad_bench.reference import given, given_folder, reference, reference_folder
+from articad_bench.reference import given, reference, reference_folders, references
 from articad_bench.shape_checks import placed, same_parts
 from articad_bench.solids import occupied
+from articad_bench.staged_cheats import STAGED, StagedCheat, alike, staged_cheats
 from articad_bench.subject import Subject
 from articad_bench.task import Task, read_json, read_task
 
@@ -44,10 +46,13 @@ _SOURCES: Final = (
     "strength_checks.py",
     "beams.py",
     "stack_checks.py",
+    "machined_checks.py",
+    "module_checks.py",
     "wanted.py",
     "solids.py",
     "subject.py",
     "cheats.py",
+    "staged_cheats.py",
 )
 COSTLY: Final = (
     "effort",
@@ -82,6 +87,10 @@ the suite and how to submit a cheat of your own.
 | waived | a body that runs through its neighbours, with waivers of its own for all of it |
 | coaxial | loops left open, and as many pins doubled |
 | other | the reference of another task |
+| given | the product that the task begins with, as it is |
+| short | of a task that begins with a product: joints go half as far from rest |
+| stage | what is given, or the product of another stage, as the answer of a stage of a task with edits |
+| partly | one of several changes of a stage not made: of a part's shape, of a joint, of the couplings |
 """
 
 
@@ -97,6 +106,7 @@ class CheatRow:
         same: Whether it is the same product as the reference, so that it is no cheat.
         digest: Of the task, its reference, the checks and the cheats.
         earlier: Whether one of these has changed since.
+        what: Which of several of its kind it is.
     """
 
     task: str
@@ -106,6 +116,12 @@ class CheatRow:
     same: bool
     digest: str
     earlier: bool = False
+    what: str = ""
+
+    @property
+    def named(self) -> str:
+        """Its kind, and which of several it is."""
+        return f"{self.cheat} ({self.what})" if self.what else self.cheat
 
     @property
     def passed(self) -> bool:
@@ -202,32 +218,38 @@ def _tried(
     kernel: PartKernel | None,
     tell: Callable[[str, str], object],
 ) -> list[CheatRow]:
-    built, before = (make(folder, task, cache=cache, kernel=kernel) for make in (reference, given))
-    assert built is not None
-    rows = []
-    for kind in (*CHEATS, "other"):
-        try:
-            elsewhere = reference(*other, cache=cache, kernel=kernel) if kind == "other" and other is not None else None
-            cheat = next(iter(cheats_of(task, built, (kind,), other=elsewhere)), None)
-        except ArticadError as error:
-            rows.append(CheatRow(task.name, kind, "format", str(error).splitlines()[0][:200], same=False, digest=digest))
-            continue
-        if cheat is None:
-            continue
-        same = the_same(kind, built, cheat.assembly)
-        failed = ("", "") if same else refused_by(task, Subject(cheat.assembly, before=before))
-        row = CheatRow(
-            task.name, kind, None if failed is None or same else failed[0], "" if failed is None else failed[1][:200], same, digest
-        )
-        rows.append(row)
-        tell(f"{task.name}: {kind}", "same" if same else "passed" if row.passed else f"refused by {row.refused_by}")
+    stages, begun = list(references(folder, task, cache=cache, kernel=kernel)), given(folder, task, cache=cache, kernel=kernel)
+    put, rows = partial(StagedCheat, what="", stage=0, before=begun, right=stages[0]), []
+    cheats = [put(kind, make=partial(make, task, stages[0])) for kind, make in CHEATS.items()]
+    if other is not None:
+        cheats.append(put("other", make=partial(reference, *other, cache=cache, kernel=kernel)))
+    for cheat in (*cheats, *staged_cheats(begun, stages)):
+        row = _judged(task, cheat, digest)
+        if row is not None:
+            rows.append(row)
+            tell(f"{task.name}: {row.named}", "same" if row.same else "passed" if row.passed else f"refused by {row.refused_by}")
     return rows
 
 
-def refused_by(task: Task, subject: Subject) -> tuple[str, str] | None:
-    """Return kind and measurement of a check that does not hold, those that cost little first; None if all hold."""
+def _judged(task: Task, cheat: StagedCheat, digest: str) -> CheatRow | None:
+    """Return what comes of a cheat; None if the task cannot be tried with it."""
+    row = partial(CheatRow, task.name, cheat.kind, digest=digest, what=cheat.what)
+    try:
+        assembly = cheat.make()
+    except ArticadError as error:
+        return row("format", str(error).splitlines()[0][:200], same=False)
+    if assembly is None:
+        return None
+    if the_same(cheat.kind, cheat.right, assembly):
+        return row(None, "", same=True)
+    failed = refused_by(task, Subject(assembly, before=cheat.before), cheat.stage)
+    return row(None, "", same=False) if failed is None else row(failed[0], failed[1][:200], same=False)
+
+
+def refused_by(task: Task, subject: Subject, stage: int = 0) -> tuple[str, str] | None:
+    """Return kind and measurement of a check of a stage that does not hold, those that cost little first; None if all hold."""
     order = {kind: place for place, kind in enumerate(COSTLY, start=1)}
-    for check in sorted(task.checks, key=lambda check: order.get(check.kind, 0)):
+    for check in sorted(task.stages[stage], key=lambda check: order.get(check.kind, 0)):
         judgement = check.judge(subject)
         if not judgement.ok:
             return check.kind, judgement.measured
@@ -236,6 +258,8 @@ def refused_by(task: Task, subject: Subject) -> tuple[str, str] | None:
 
 def the_same(kind: str, reference: Assembly, cheat: Assembly) -> bool:
     """Return whether a cheat is the product itself: the mirror image of a symmetric one, or one whose exchanged bodies are alike."""
+    if kind in STAGED:
+        return alike(reference, cheat)
     if kind == "mirrored":
         return _same_mirrored(reference, cheat)
     return kind == "swapped" and same_parts(Subject(reference), Subject(cheat), SAME)
@@ -266,12 +290,9 @@ def _other(every: Sequence[tuple[Path, Task]], task: Task) -> tuple[Path, Task] 
 
 def _digest(folder: Path, task: Task) -> str:
     found = hashlib.sha256(task.model_dump_json(exclude={"unheld"}).encode())  # which says nothing of what must hold
-    if task.reference is not None:
-        for place in (reference_folder(folder, task), given_folder(folder, task)):
-            if place is None:
-                continue
-            for file in sorted(path for path in place.rglob("*") if path.suffix in {".json", ".py"}):
-                found.update(file.relative_to(place).as_posix().encode() + file.read_bytes())
+    for place in reference_folders(folder, task):
+        for file in sorted(path for path in place.rglob("*") if path.suffix in {".json", ".py"}):
+            found.update(file.relative_to(place).as_posix().encode() + file.read_bytes())
     for name in _SOURCES:
         found.update(Path(__file__).with_name(name).read_bytes())
     return found.hexdigest()[:16]
@@ -282,7 +303,7 @@ def _known(file: Path) -> list[CheatRow]:
 
 
 def _save(out: Path, rows: Sequence[CheatRow], tasks: int) -> dict[str, Any]:
-    rows = sorted(rows, key=lambda row: (row.task, row.cheat))
+    rows = sorted(rows, key=lambda row: (row.task, row.cheat, row.what))
     passed = [row for row in rows if row.passed]
     report = {
         "schema": SCHEMA,
@@ -291,7 +312,7 @@ def _save(out: Path, rows: Sequence[CheatRow], tasks: int) -> dict[str, Any]:
         "tasks": tasks,
         "tried": len({row.task for row in rows}),
         "cheats": sum(not row.same for row in rows),
-        "passed": [[row.task, row.cheat] for row in passed],
+        "passed": [[row.task, row.named] for row in passed],
         "rows": [asdict(row) for row in rows],
     }
     for name, text in ((_RESULTS, json.dumps(report, indent=1, ensure_ascii=False) + "\n"), (_PAGE, page(report, rows))):
@@ -311,7 +332,7 @@ def page(report: Mapping[str, Any], rows: Sequence[CheatRow]) -> str:
         )
     lines.append("| cheat | tried | same | pass | refused by |")
     lines.append("|---|---|---|---|---|")
-    for kind in (*CHEATS, "other"):
+    for kind in (*CHEATS, "other", *STAGED):
         mine = [row for row in rows if row.cheat == kind]
         by = Counter(row.refused_by for row in mine if row.refused_by)
         told = ", ".join(f"{check} {count}" for check, count in by.most_common())

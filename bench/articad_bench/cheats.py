@@ -451,12 +451,15 @@ def _changed(
     T_ground: SE3 | None = None,
 ) -> Assembly:
     mechanism = reference.mechanism
+    joints = reference.joints if joints is None else joints
+    names = {joint.name for joint in joints}
     return Assembly.from_parts(
         reference.name,
         parts=list(reference.parts.values()) if parts is None else parts,
-        joints=reference.joints if joints is None else joints,
+        joints=joints,
         ground=reference.ground,
         couplings=mechanism.couplings if couplings is None else couplings,
+        fits={name: fit for name, fit in reference.fits.items() if name in names},
         T_ground=mechanism.T_ground if T_ground is None else T_ground,
     )
 

@@ -42,6 +42,18 @@ def given_folder(folder: Path, task: Task) -> Path | None:
     return None if task.given is None else _own(folder, task.given)
 
 
+def reference_folders(folder: Path, task: Task) -> list[Path]:
+    """Return the folders that a task's products are built from: the given one, the reference and its edits, as far as there are any.
+
+    Raises:
+        ReadError: If a link is in the place of one.
+    """
+    if task.reference is None:
+        return []
+    edits = [_own(folder, edit.reference) for edit in task.edits if edit.reference is not None]
+    return list(dict.fromkeys([*reversed(_folders(folder, task)), *edits]))
+
+
 def _own(folder: Path, name: str) -> Path:
     """Return a folder of a task, which is no link, or that of an example.
 

@@ -19,7 +19,7 @@ from articad.batches.pool import Call
 from articad.connectors import SE3
 from articad.geometry import Part, TriMesh, box, cylinder
 from articad.kinematics.joints import Joint
-from articad.plan.resolve import Waiver
+from articad.plan.resolve import Fit, Waiver
 from articad_bench.bindings import bindings, bound
 from articad_bench.cheat_run import CheatRow, page, refused_by, run_cheats, the_same
 from articad_bench.cheats import CHEATS, cheats_of
@@ -291,6 +291,17 @@ def test_what_is_left_out_moves_or_stands_in_the_text() -> None:
 
     assert left("It stands on four legs, with a lever on a pivot.") == {"leg_left"}
     assert left("A lever on a pivot, to the left.") == {"lever", "cap"}
+
+
+def test_a_cheat_declares_the_fits_of_the_reference() -> None:
+    """Without them it would be refused for what it does not say, and not for what it is."""
+    fit = Fit.named("H7/g6", 10.0)
+    fitted = Assembly.from_parts("hinge", parts=hinge().parts.values(), joints=hinge().joints, ground="plate", fits={"turn": fit})
+
+    kinds = ("wires", "misplaced", "waived", "scaled")
+    assert [dict(cheat.assembly.fits) for cheat in cheats_of(task(), fitted, kinds)] == [{"turn": fit}] * len(kinds)
+    (omitted,) = cheats_of(task(), fitted, ("omitted",))
+    assert dict(omitted.assembly.fits) == {}
 
 
 def test_a_shell_of_a_thick_board_fills_too_little() -> None:

@@ -1,0 +1,130 @@
+"""Cheats on tasks that begin with a product, or go on after it: what was there already is the answer, or all but one of the changes.
+
+They are made of the product that is given and of the reference at each stage.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Final
+
+from articad.assembly import Assembly
+from articad.kinematics import Coupling, Joint, Mechanism
+
+__all__ = ["STAGED", "StagedCheat", "alike", "staged_cheats"]
+
+STAGED: Final = ("given", "short", "stage", "partly")
+"""Kinds of these cheats."""
+
+
+@dataclass(frozen=True)
+class StagedCheat:
+    """A product that must not pass at a stage of a task.
+
+    Attributes:
+        kind: One of `STAGED`, or of `articad_bench.cheats`.
+        what: Which of several of its kind it is.
+        stage: Where it is the answer: 0, or the number of an edit.
+        before: The product before, as it should be.
+        right: The product that is asked for.
+        make: Returns the cheat; None if the task cannot be tried with it.
+    """
+
+    kind: str
+    what: str
+    stage: int
+    before: Assembly | None
+    right: Assembly
+    make: Callable[[], Assembly | None]
+
+
+def staged_cheats(begun: Assembly | None, stages: Sequence[Assembly]) -> Iterator[StagedCheat]:
+    """Yield what may be left undone.
+
+    Args:
+        begun: The product that a task begins with, if it does.
+        stages: The reference at first, and after each edit.
+    """
+    products = [begun, *stages]
+    for stage, right in enumerate(stages):
+        before = products[stage]
+        put = partial(StagedCheat, stage=stage, before=before, right=right)
+        for number, product in enumerate(products, start=-1):
+            if product is None or number == stage:
+                continue
+            first = number < 0 and stage == 0
+            what = "" if first else f"{_named(number)} in place of {_named(stage)}"
+            yield put("given" if first else "stage", what, make=partial(_itself, product))
+        for what, make in _partly(before, right):
+            yield put("partly", f"{_named(stage)} with {what} as before", make=make)
+    if begun is not None:
+        yield StagedCheat("short", "", 0, begun, stages[0], partial(_short, stages[0]))
+
+
+def alike(first: Assembly, second: Assembly) -> bool:
+    """Return whether two products have the same shapes, joints and couplings under the same names."""
+    shapes = [{name: part.mesh and part.mesh.digest for name, part in each.parts.items()} for each in (first, second)]
+    joints = [{joint.name: joint for joint in each.joints} for each in (first, second)]
+    return shapes[0] == shapes[1] and joints[0] == joints[1] and first.mechanism.couplings == second.mechanism.couplings
+
+
+def _named(number: int) -> str:
+    return "what is given" if number < 0 else "the first product" if number == 0 else f"edit {number}"
+
+
+def _itself(product: Assembly) -> Assembly:
+    return product
+
+
+def _short(after: Assembly) -> Assembly:
+    """Return a product whose joints go half as far from rest: so they do not come to what is in the way."""
+
+    def narrowed(joint: Joint) -> Joint:
+        lower, upper = (
+            [(end + rest) / 2 for end, rest in zip(ends, joint.rest, strict=True)] for ends in (joint.limits.lower, joint.limits.upper)
+        )
+        return replace(joint, limits=replace(joint.limits, lower=tuple(lower), upper=tuple(upper)))
+
+    joints = [narrowed(joint) if joint.limits.lower else joint for joint in after.joints]
+    return _moving(after, joints, after.mechanism.couplings)
+
+
+def _partly(before: Assembly | None, after: Assembly) -> list[tuple[str, Callable[[], Assembly]]]:
+    """Return what makes products in which one change of several was not made: of a part's shape, of a joint, of the couplings.
+
+    Of parts that have changed in the same way, one is left as it was.
+    """
+    if before is None:
+        return []
+    found: dict[object, tuple[str, Callable[[], Assembly]]] = {}
+    for name, part in after.parts.items():
+        old = before.parts.get(name)
+        if old is not None and old.mesh is not None and part.mesh is not None and old.mesh.digest != part.mesh.digest:
+            found.setdefault((old.mesh.digest, part.mesh.digest), (name, partial(_with_part, after, before, name)))
+    joints = {joint.name: joint for joint in before.joints}
+    for joint in after.joints:
+        if joint.name in joints and joints[joint.name] != joint:
+            found[joint.name] = (f"joint {joint.name}", partial(_with_joint, after, before, joint.name))
+    if before.mechanism.couplings != after.mechanism.couplings:
+        found[()] = ("the couplings", partial(_with_couplings, after, before))
+    return list(found.values()) if len(found) > 1 else []
+
+
+def _with_part(after: Assembly, before: Assembly, name: str) -> Assembly:
+    return replace(after, parts={**after.parts, name: before.parts[name]})
+
+
+def _with_joint(after: Assembly, before: Assembly, name: str) -> Assembly:
+    (old,) = (joint for joint in before.joints if joint.name == name)
+    return _moving(after, [old if joint.name == name else joint for joint in after.joints], after.mechanism.couplings)
+
+
+def _with_couplings(after: Assembly, before: Assembly) -> Assembly:
+    return _moving(after, after.joints, before.mechanism.couplings)
+
+
+def _moving(after: Assembly, joints: Sequence[Joint], couplings: Sequence[Coupling]) -> Assembly:
+    old = after.mechanism
+    return replace(after, mechanism=Mechanism(old.parts, old.ground, tuple(joints), tuple(couplings), T_ground=old.T_ground))
