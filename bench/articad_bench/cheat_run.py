@@ -48,6 +48,7 @@ _SOURCES: Final = (
     "stack_checks.py",
     "machined_checks.py",
     "module_checks.py",
+    "edit_checks.py",
     "wanted.py",
     "solids.py",
     "subject.py",

@@ -24,6 +24,7 @@ from articad.simulation.examine import simulate_assembly, simulate_file
 from articad_bench.check import Bounds, Vector, in_words
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
+from articad_bench.edit_checks import Shifted
 from articad_bench.function_checks import Effort, Folds, Passes, PutTogether
 from articad_bench.likeness_checks import Arranged, Handed, Matter
 from articad_bench.machined_checks import Machined, Toleranced
@@ -368,24 +369,36 @@ class Moves(Check):
 
 
 class Gap(Check):
-    """Parts that a joint connects keep this distance at rest; `within` counts only surface this close to the joint's axis [mm]."""
+    """Parts that a joint connects keep this distance at rest; `within` counts only surface this close to the joint's axis [mm].
+
+    With `bodies`, what is fixed to the parts counts as well: the cap of a bearing with its base.
+    """
 
     kind: Literal["gap"] = "gap"
     joint: JointWanted
     mm: Bounds
     within: float | None = None
     number: Bounds = (1, 999)
+    bodies: bool = False
 
     @property
     def wanted(self) -> str:
-        return f"{in_words(self.number)} joints ({self.joint}) with a gap of {in_words(self.mm)} mm"
+        between = " between bodies" if self.bodies else ""
+        return f"{in_words(self.number)} joints ({self.joint}) with a gap of {in_words(self.mm)} mm{between}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         near = Fit(within=self.within)
-        gaps = [Gauge(subject.scene, joint, near).rest() for joint in self.joint.found(subject) if _shaped(subject, joint)]
+        joints = [joint for joint in self.joint.found(subject) if _shaped(subject, joint)]
+        gaps = [_between_bodies(subject, joint) if self.bodies else Gauge(subject.scene, joint, near).rest() for joint in joints]
         count = sum(self.mm[0] <= gap <= self.mm[1] for gap in gaps)
         told = ", ".join(f"{gap:.3g}" for gap in gaps)
         return self.number[0] <= count <= self.number[1], f"{count} ({told} mm)"
+
+
+def _between_bodies(subject: Subject, joint: Joint) -> float:
+    """Return the distance of the two bodies that a joint connects, with all that is fixed to them [mm]."""
+    bodies = [[name for name in subject.shaped if subject.rigid[name] == subject.rigid[end]] for end in (joint.parent, joint.child)]
+    return min(subject.apart(a, b) for a in bodies[0] for b in bodies[1])
 
 
 class Lead(Check):
@@ -499,6 +512,7 @@ AnyCheck = Annotated[
     | Captive
     | Simulates
     | Unchanged
+    | Shifted
     | Holes
     | Studs
     | Wall

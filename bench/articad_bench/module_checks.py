@@ -58,7 +58,7 @@ class Spaced(_Sized):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         names = subject.of_size(self.mm, self.tolerance)
-        levels = _levels([_middle(subject, name, np.array(self.axis)) for name in names])
+        levels = _levels([middle_along(subject, name, np.array(self.axis)) for name in names])
         apart = np.diff([float(np.mean(level)) for level in levels])
         counts = [len(level) for level in levels]
         told = (
@@ -88,7 +88,9 @@ class Ordered(Check):
         return f"parts of {', '.join(_by(sides) for sides in self.sizes)} mm follow each other along {self.axis}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        found = [[_middle(subject, name, np.array(self.axis)) for name in subject.of_size(sides, self.tolerance)] for sides in self.sizes]
+        found = [
+            [middle_along(subject, name, np.array(self.axis)) for name in subject.of_size(sides, self.tolerance)] for sides in self.sizes
+        ]
         ok = all(found) and all(max(a) < min(b) for a, b in pairwise(found))
         return ok, "; ".join(", ".join(f"{place:.4g}" for place in places[:4]) or "none" for places in found)
 
@@ -180,7 +182,8 @@ def _by(sides: Sides) -> str:
     return " x ".join("any" if side is None else f"{side:g}" for side in sides)
 
 
-def _middle(subject: Subject, name: str, axis: FloatArray) -> float:
+def middle_along(subject: Subject, name: str, axis: FloatArray) -> float:
+    """Return where the middle of a part's box lies along an axis of the whole at rest [mm]."""
     mesh = subject.assembly.parts[name].mesh
     assert mesh is not None
     along = subject.rest[name].apply(mesh.vertices) @ (axis / np.linalg.norm(axis))

@@ -387,7 +387,7 @@ _MEASURES: Final[dict[str, Callable[[Any], list[Value]]]] = {
     "size": lambda row: _lengths(row, row.mm),
     "part_size": lambda row: _lengths(row, row.mm),
     **dict.fromkeys(("links", "lead", "square"), lambda row: _lengths(row, [row.mm])),
-    **dict.fromkeys(("rise", "level", "gap", "extent", "wall", "reaches"), _bounds),
+    **dict.fromkeys(("rise", "level", "gap", "extent", "wall", "reaches", "shifted"), _bounds),
     "spaced": lambda row: [
         *_lengths(row, (*row.mm, *row.pitch)),
         *_counts(row.levels, *row.each, row.levels * row.each[0] if len(row.each) == 1 else sum(row.each)),

@@ -61,6 +61,7 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("slider_crank", {"kind": "moves", "joint": {"type": "slider"}, "volume": [0.01, 0.2], "size": [0.1, 0.4]}),
     ("toggle_clamp", {"kind": "simulates"}),
     ("four_bar", {"kind": "unchanged", "number": [8, 8]}),
+    ("four_bar", {"kind": "shifted", "axis": [1, 0, 0], "mm": [-0.1, 0.1], "number": [1, 99]}),
     ("toggle_clamp", {"kind": "holes", "diameter": 6.6, "number": [4, 4], "axis": [0, 0, 1], "through": True, "length": [6.9, 7.1]}),
     ("toggle_clamp", {"kind": "studs", "diameter": 12, "number": [1, 1]}),
     ("desk_lamp", {"kind": "wall", "mm": [1.8, 2.2], "number": [1, 1]}),

@@ -451,6 +451,7 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "arranged": _one_aside,
     "handed": _mirror_image,
     "unchanged": _all_new,
+    "shifted": _all_new,
     "holes": _larger,
     "studs": _larger,
     "wall": _larger,
