@@ -27,6 +27,7 @@ from articad.memory.embedding import FloatArray, normalised
 
 DEFAULT_MODEL: Final = "gemini/gemini-3-flash-preview"  # the paper's backbone: it accepts images and schemas, and its price is known
 TIMEOUT_S: Final = 600.0  # for one answer; a thinking model writes a large plan in minutes
+_WHOLE_S: Final = 10  # from here on, seconds are told without a fraction
 TRIES: Final = 6
 FIRST_WAIT_S: Final = 1.0  # doubled after each try: 31 s in all
 LONGEST_WAIT_S: Final = 60.0
@@ -293,7 +294,7 @@ class LiteLLM:
         if kind == "key":
             return self._key_error(model, "was refused by the provider")
         if kind == "late":
-            what = f"did not answer within {seconds:.3g} s"
+            what = f"did not answer within {seconds:.{0 if seconds >= _WHOLE_S else 1}f} s"
         elif kind == "empty":
             what = "gave an empty answer"
         elif kind == "redirect":

@@ -15,8 +15,8 @@ from articad.geometry import TriMesh
 __all__ = ["Bent", "Section", "Support", "beam", "section"]
 
 STATIONS: Final = 60  # along a beam
-LOOSE: Final = 1e-6  # of the largest pivot of its stiffness: with a smaller one, nothing holds a beam
-SAME_MM: Final = 1e-3  # nodes so near each other are one
+SAME: Final = 1e-3  # of the length of a beam: nodes so near each other are one
+POINTS: Final = 2  # at which something holds a beam that may turn there: with fewer, nothing holds it
 ROUNDED: Final = 1e-9  # of the largest force or deflection
 Held = NDArray[np.bool_]
 """At which nodes of a beam something holds it."""
@@ -108,7 +108,7 @@ def beam(
     ends = mesh.vertices @ axis
     start, length = float(ends.min()), float(np.ptp(ends))
     low, high = (end - start for end in loaded)
-    nodes = _nodes(length, [0.0, length, low, high, *(end for row in supports for end in (row.low, row.high))])
+    nodes = _nodes(length, [low, high, *(end for row in supports for end in (row.low, row.high))])
     lengths = np.diff(nodes)
     sections = [section(mesh, axis, start + float(at)) for at in (nodes[:-1] + nodes[1:]) / 2]
     if any(each.moment <= 0 for each in sections):
@@ -117,11 +117,11 @@ def beam(
     weights = np.array([each.edge / each.moment for each in sections])
     both, pushes, clamps = (np.zeros(len(nodes), dtype=bool) for _ in range(3))
     for row in supports:
-        there = (nodes >= row.low - SAME_MM) & (nodes <= row.high + SAME_MM)
+        there = _along(nodes, row.low, row.high)
         both |= there & row.both_ways
         pushes |= there & (not row.both_ways)
         clamps |= there & (row.both_ways and row.high > row.low)
-    under = (nodes >= low - SAME_MM) & (nodes <= high + SAME_MM)
+    under = _along(nodes, low, high)
     worst = Bent(0.0, 0.0)
     for density, point in _loads(lengths, under, force, anywhere=anywhere):
         bent = _solved(lengths, stiff, weights, (density, point), both, pushes, clamps)
@@ -132,16 +132,26 @@ def beam(
 
 
 def _nodes(length: float, wanted: Sequence[float]) -> FloatArray:
-    fixed = np.unique(np.round(np.clip(wanted, 0.0, length), 6))
+    """Return places along a beam, at least a share of its length apart: its ends, those that are wanted, and others evenly between."""
+    fixed = [0.0, length]
+    for place in np.clip(wanted, 0.0, length):
+        if np.abs(np.array(fixed) - place).min() > SAME * length:
+            fixed.append(float(place))
     even = np.linspace(0.0, length, STATIONS + 1)
-    free = even[np.abs(even[:, None] - fixed[None]).min(axis=1) > length / (4 * STATIONS)]
-    nodes = np.sort(np.concatenate([fixed, free]))
-    return np.asarray(nodes[np.append(True, np.diff(nodes) > SAME_MM)])
+    free = even[np.abs(even[:, None] - np.array(fixed)[None]).min(axis=1) > length / (4 * STATIONS)]
+    return np.sort(np.concatenate([fixed, free]))
+
+
+def _along(nodes: FloatArray, low: float, high: float) -> Held:
+    """Return which nodes lie on a stretch: from the one nearest to its beginning to the one nearest to its end."""
+    first, last = (int(np.abs(nodes - end).argmin()) for end in (low, high))
+    number = np.arange(len(nodes))
+    return np.asarray((number >= first) & (number <= last))
 
 
 def _loads(lengths: FloatArray, under: Held, force: float, *, anywhere: bool) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Yield the loads of the pieces of a beam [N/mm] and of its nodes [N]."""
-    if anywhere:
+    if anywhere or under.sum() == 1:
         for node in np.flatnonzero(under):
             yield np.zeros(len(lengths)), force * (np.arange(len(under)) == node)
     else:
@@ -166,15 +176,13 @@ def _stiffness(h: float, stiff: float) -> FloatArray:
 
 
 def _balanced(K: FloatArray, load: FloatArray) -> FloatArray | None:
-    """Return the solution of K x = load, symmetric; None if K lets something move without a force."""
+    """Return the solution of K x = load, symmetric; None where pieces of a beam differ so much that numbers do not say it."""
     if not len(load):
         return load
     try:
-        factor = cho_factor(K)
+        return np.asarray(cho_solve(cho_factor(K), load))
     except LinAlgError:
         return None
-    pivots = np.diag(factor[0])
-    return None if pivots.min() < LOOSE * pivots.max() else np.asarray(cho_solve(factor, load))
 
 
 def _solved(
@@ -200,7 +208,8 @@ def _solved(
     for _ in range(count):
         free = np.ones(count, dtype=bool)
         free[::2], free[1::2] = ~holding, ~clamps
-        found = _balanced((K * np.outer(scale, scale))[np.ix_(free, free)], scale[free] * load[free]) if holding.any() else None
+        held = bool(clamps.any()) or holding.sum() >= POINTS
+        found = _balanced((K * np.outer(scale, scale))[np.ix_(free, free)], scale[free] * load[free]) if held else None
         if found is None:
             return None
         moved = np.zeros(count)

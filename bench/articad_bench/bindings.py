@@ -27,8 +27,10 @@ GREATEST: Final = 2.5  # times less, for the joint that moves most
 SIZE: Final = 2.0  # times smaller or larger, as a share of the whole
 HAND: Final = 0.02  # by which the moments of mirror images differ, at least, where the whole has a hand
 DETAIL: Final = 0.001  # by which they differ where a detail has one: less is the roughness of meshes
-HANDED: Final = re.compile(r"\b(left|right|(anti|counter)?clockwise)\b", re.IGNORECASE)
-"""Words of a prompt that tell a product from its mirror image."""
+HANDED: Final = re.compile(
+    r"(?<!\bis )(?<!\bare )(?<!\bbe )(?<!\bbeing )(?<!\bmm )\bleft\b(?! out)|\b(right|(anti|counter)?clockwise)\b", re.IGNORECASE
+)
+"""Words of a prompt that tell a product from its mirror image; what is left, or left out, is on no side."""
 BOUND: Final = (Moves, Made, Arranged, Handed, Matter, Threads, Machined, Toleranced)
 
 

@@ -22,9 +22,11 @@ from articad_bench.subject import Subject
 from articad_bench.wanted import JointWanted
 
 G: Final = -GRAVITY[2]  # m/s²
+BY_FORCE: Final = frozenset({"snap", "press", "circlip"})  # fastenings whose parts are in each other's way until they are forced
 STROKE: Final = 41  # values of a driver at which its effort is measured
 STEP: Final = 1e-3  # of a driver's range, over which energies are compared
 STILL: Final = 1e-9  # rad or mm: a joint that moves by less does not follow
+LIFTED_MM: Final = 0.01  # a part that a driver raises or lowers by less stays on its level
 POSES: Final = {1: 13, 2: 7, 3: 5, 4: 4}  # values of each of so many drivers at which a product is measured; of more, both ends and rest
 MOST_DRIVERS: Final = 6  # that are combined with each other
 MOST_IN_TURN: Final = 3  # drivers that are moved one after the other, in every order
@@ -32,10 +34,11 @@ TRIED: Final = 4  # poses of the least boxes that are tried for a way there
 
 
 class PutTogether(Check):
-    """Parts go to their places one after the other, along paths that are proven free of collisions; a number of steps may need force.
+    """Parts go to their places one after the other, along paths that are free of collisions; a number of steps may need force.
 
-    A step needs force where two parts are pressed or snapped together, or a circlip is sprung into its groove, and would else be in each other's
-    way. Pairs that are said to be bought as one count as such steps as well: who is judged does not say what is allowed.
+    Straight paths are proven, and the turns of a part into a thread are sampled. A step needs force where two parts are pressed or snapped
+    together, or a circlip is sprung into its groove, and the two would otherwise be in each other's way. Pairs that are said to be bought as one
+    count as such steps as well: who is judged does not say what is allowed.
     """
 
     kind: Literal["put_together"] = "put_together"
@@ -47,7 +50,7 @@ class PutTogether(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         order = subject.assembly.assembly_order()
-        forced = sum(step.strength == "permitted" and all(row[2] != "purchased" for row in step.permitted) for step in order.steps)
+        forced = sum(any(row[2] in BY_FORCE for row in step.permitted) for step in order.steps)
         forced += sum(joint.fastening == "purchased" for joint in subject.assembly.joints)
         blocked = "; ".join(finding.message for finding in order.findings)
         told = f"{len(order.steps)} steps, {forced} by force" if order.ok else blocked or f"not known of {', '.join(order.left_out)}"
@@ -57,9 +60,9 @@ class PutTogether(Check):
 class Effort(Check):
     """A number of joints are held against gravity, at any pose of their range, by a force or torque whose largest value is within bounds [N, N m].
 
-    Virtual work: while a mechanism without friction stands still, the effort at a joint is the change of the potential energy of all that has
-    mass by the change of this joint, whichever joint drives. Loops and couplings are closed. The other drivers are at rest, and once more at
-    either end of their ranges.
+    Virtual work: while a mechanism without friction stands still, the effort at a joint is the change of the potential energy of all parts by
+    the change of this joint, whichever joint drives. A part of which no mass is known weighs what water does. Loops and couplings are closed.
+    The other drivers are at rest, and once more at either end of their ranges.
 
     Attributes:
         most: Bounds of the largest effort over all poses.
@@ -160,7 +163,7 @@ def _energies(subject: Subject, poses: SE3, load: _Load | None) -> FloatArray:
     mechanism = subject.assembly.mechanism
     total = np.zeros(poses.translation.shape[:-2])
     for index, name in enumerate(mechanism.parts):
-        mass = subject.assembly.parts[name].mass
+        mass = subject.mass(name)
         if mass is not None:
             total = total + G * mass.mass * poses[..., index].apply(np.asarray(mass.com))[..., 2] * 1e-3
         if load is not None and load.part == name:
@@ -180,7 +183,7 @@ def _loaded(subject: Subject, driver: int, reached: tuple[float, float], load: f
             continue
         middle = subject.hull(name).mean(axis=0)
         lower, upper = (float(solution.poses[row, index].apply(middle)[2]) for row in range(2))
-        if abs(upper - lower) > STILL:
+        if abs(upper - lower) > LIFTED_MM:
             tops += level_tops(subject, name)
     best = max(tops, key=lambda top: (round(top.height, 2), top.area), default=None)
     if best is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final, Literal
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from articad.arrays import FloatArray
 from articad.geometry import TriMesh
@@ -188,14 +189,14 @@ def placed(subject: Subject) -> list[TriMesh]:
 
 def same_parts(first: Subject, second: Subject, slack: float) -> bool:
     """Return whether parts of the same volume fill the same boxes at rest, within a share of the longest side of the whole and of each volume."""
-    rows, others = (
-        sorted([*mesh.bounds.ravel().round(2).tolist(), round(abs(mesh.volume), 1)] for mesh in placed(each)) for each in (first, second)
-    )
-    size = float(first.size.max())
-    return len(rows) == len(others) and all(
-        float(np.abs(np.subtract(a[:6], b[:6])).max()) <= slack * size and abs(a[6] - b[6]) <= slack * a[6]
-        for a, b in zip(rows, others, strict=True)
-    )
+    mine, theirs = placed(first), placed(second)
+    if len(mine) != len(theirs):
+        return False
+    boxes, others = (np.array([mesh.bounds.ravel() for mesh in meshes]) for meshes in (mine, theirs))
+    volumes, further = (np.array([abs(mesh.volume) for mesh in meshes]) for meshes in (mine, theirs))
+    alike = np.abs(boxes[:, None] - others[None]).max(axis=2) <= slack * float(first.size.max())
+    alike &= np.abs(volumes[:, None] - further[None]) <= slack * volumes[:, None]
+    return bool(alike[linear_sum_assignment(~alike)].all())
 
 
 def _beside(found: Round, point: FloatArray) -> float:

@@ -18,8 +18,9 @@ from articad_bench.wanted import JointWanted, in_numbers
 FACING: Final = 0.999  # cosine of the lean of a face across the line
 LINES: Final = 200  # that are looked at
 SAME_MM: Final = 0.05  # lines so near each other are one
-ROUNDED: Final = 1e-6  # mm
+ROUNDED: Final = 2e-4  # mm: what becomes of lengths in a file of single precision
 FLAT_MM2: Final = 1e-12  # a triangle that is seen from its edge has no more area
+GRAZED: Final = 0.01  # cosine of the lean of a triangle along a line: where the line crosses it, the mesh decides whether it is in the part
 
 
 class Piece(PlanObject):
@@ -162,11 +163,9 @@ def least_left(subject: Subject, pieces: Sequence[Piece], along: FloatArray) -> 
         assert mesh is not None
         corners[name] = (subject.rest[name].apply(mesh.vertices) @ turn.T)[mesh.triangles]
     lines = _lines(corners, pieces)
-    spans: list[list[_Span]] = [[] for _ in lines]
-    for name, triangles in corners.items():
-        for here, found in zip(spans, _spans(name, triangles, lines), strict=True):
-            here.extend(found)
-    every = [left for line in spans for left in _stacks(sorted(line), pieces)]
+    rows = zip(*(_spans(name, triangles, lines) for name, triangles in corners.items()), strict=True)
+    clear = (sorted(span for spans in row if spans is not None for span in spans) for row in rows if None not in row)
+    every = [left for line in clear for left in _stacks(line, pieces)]
     return min(every, key=lambda left: left.left, default=None)
 
 
@@ -187,8 +186,8 @@ def _lines(corners: dict[str, FloatArray], pieces: Sequence[Piece]) -> FloatArra
     return np.asarray(every[:: max(1, -(-len(every) // LINES))])
 
 
-def _spans(name: str, triangles: FloatArray, lines: FloatArray) -> Iterator[list[_Span]]:
-    """Yield for each line where it is inside a part."""
+def _spans(name: str, triangles: FloatArray, lines: FloatArray) -> Iterator[list[_Span] | None]:
+    """Yield for each line where it is inside a part; None for a line that runs along the side of it."""
     low, high = triangles[..., :2].min(axis=(0, 1)), triangles[..., :2].max(axis=(0, 1))
     for line in lines:
         if (line < low).any() or (line > high).any():
@@ -200,7 +199,11 @@ def _spans(name: str, triangles: FloatArray, lines: FloatArray) -> Iterator[list
         weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
         total = weights.sum(axis=1)
         inside = (np.abs(total) > FLAT_MM2) & ((weights * np.sign(total)[:, None]) >= 0).all(axis=1)
-        hits = np.sort((weights[inside] * triangles[near][inside][..., 2]).sum(axis=1) / total[inside])
+        sides = triangles[near][inside]
+        if (np.abs(total[inside]) < GRAZED * np.linalg.norm(np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0]), axis=1)).any():
+            yield None
+            continue
+        hits = np.sort((weights[inside] * sides[..., 2]).sum(axis=1) / total[inside])
         hits = hits[np.append(True, np.diff(hits) > ROUNDED)] if len(hits) else hits
         yield [_Span(float(start), float(end), name) for start, end in zip(hits[::2], hits[1::2], strict=False)]
 

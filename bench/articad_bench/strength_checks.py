@@ -9,7 +9,7 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from articad.arrays import FloatArray
+from articad.arrays import FloatArray, IntArray
 from articad.geometry import TriMesh
 from articad.kinematics.joints import JointType
 from articad_bench.beams import Bent, Support, beam
@@ -115,13 +115,24 @@ def level_tops(subject: Subject, name: str) -> list[Top]:
     heights = mesh.vertices[mesh.triangles[chosen]].mean(axis=1)[:, 2]
     ground = float(subject.corners(subject.rest)[0][2])
     tops = []
-    for level in np.unique(np.round(heights / LEVEL_MM)):
-        rows = chosen[np.round(heights / LEVEL_MM) == level]
+    for rows in _levels(heights, chosen):
         points = mesh.vertices[mesh.triangles[rows]]
         sides, ways = _rectangle(points.reshape(-1, 3)[:, :2])
         middle = np.average(points.mean(axis=1), axis=0, weights=area[rows])
         tops.append(Top(name, float(middle[2]) - ground, float(area[rows].sum()), sides, ways, middle, points.reshape(-1, 3)[:, :2]))
     return tops
+
+
+def _levels(heights: FloatArray, chosen: IntArray) -> list[IntArray]:
+    """Return triangles in groups of one level, from below; each group begins at its lowest triangle."""
+    groups: list[list[int]] = []
+    low = -math.inf
+    for at in np.argsort(heights, kind="stable"):
+        if heights[at] > low + LEVEL_MM:
+            low = float(heights[at])
+            groups.append([])
+        groups[-1].append(int(chosen[at]))
+    return [np.array(group) for group in groups]
 
 
 def _rectangle(points: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -18,6 +18,7 @@ from articad.assembly import Assembly, Poses
 from articad.certificates.fits import FitReport, check_fits, followed
 from articad.connectors import SE3
 from articad.errors import ArticadError
+from articad.geometry.mass import MassProperties
 from articad.interference.check import check_scene
 from articad.interference.report import Checks
 from articad.interference.scene import Scene
@@ -26,6 +27,7 @@ from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.motion import FeasibleRange
 from articad_bench.solids import boxes_by_faces
 
+WATER: Final = 1000.0  # kg/m³
 _SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR})
 _ASIDE: Final = {str(kind): {"x", "y"} for kind in JointType} | {
     str(JointType.BALL): {"x", "y", "z"},
@@ -173,10 +175,15 @@ class Subject:
             if row.verdict in {"not made", "not assessed"} or any(loss.way[1:] in _ASIDE[row.type] for loss in row.losses)
         )
 
+    def mass(self, part: str) -> MassProperties | None:
+        """Return the mass of a part; of water where none is known; None if it has neither a mass nor a shape."""
+        mesh, mass = self.assembly.parts[part].mesh, self.assembly.parts[part].mass
+        return mass if mass is not None or mesh is None else MassProperties.from_solid(*mesh.solid_integrals(), WATER)
+
     def density(self, part: str) -> float:
         """Return a part's mass by its volume [kg/mm³]; that of water where no mass is known."""
         mesh, mass = self.assembly.parts[part].mesh, self.assembly.parts[part].mass
-        return 1e-6 if mesh is None or mass is None or not mesh.volume else mass.mass / abs(mesh.volume)
+        return WATER * 1e-9 if mesh is None or mass is None or not mesh.volume else mass.mass / abs(mesh.volume)
 
     def per_unit(self, joint: Joint) -> float:
         """Return what turns a joint's main coordinate into degrees or mm."""

@@ -138,8 +138,8 @@ def test_each_try_is_a_call_of_the_budget() -> None:
 @pytest.mark.parametrize(
     ("name", "limits", "why"),
     [
-        ("hang", {"minutes": 1 / 60}, r"openai/x did not answer within (0\.\d+|1) s, after 1 attempt"),
-        ("429 with a long Retry-After", {"minutes": 1 / 60}, "openai/x failed with status 429, after 1 attempt"),
+        ("hang", {"minutes": 1 / 60}, r"openai/x did not answer within (0\.\d|1\.0) s, after 1 attempt"),
+        ("429 with a long Retry-After", {"minutes": 0.5}, "openai/x failed with status 429, after 1 attempt"),
         ("429 with a long Retry-After", {"calls": 2}, "openai/x failed with status 429, after 2 attempts"),
     ],
 )
@@ -151,6 +151,12 @@ def test_a_spent_budget_says_why_the_last_attempt_failed(name: str, limits: dict
         (finding,) = caught.value.findings
         assert re.search(why, finding.message)
         assert finding.code == "E_BUDGET"
+
+
+@pytest.mark.parametrize(("seconds", "told"), [(0.84, "0.8"), (59.6, "60"), (600.0, "600"), (1800.0, "1800")])
+def test_a_time_is_told_in_plain_digits(seconds: float, told: str) -> None:
+    failed = LiteLLM("x", api_base="http://127.0.0.1:1")._failure({"kind": "late", "status": None, "text": ""}, "m", 1, seconds)
+    assert f"did not answer within {told} s" in str(failed)
 
 
 @pytest.mark.parametrize("status", ["301 Moved", "302 Found", "303 See Other", "307 Temporary Redirect", "308 Permanent Redirect"])

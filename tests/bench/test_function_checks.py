@@ -9,6 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+from scipy.optimize import nnls
 
 from articad.assembly import Assembly
 from articad.connectors import SE3
@@ -16,12 +17,13 @@ from articad.export.mjcf import write_mjcf
 from articad.geometry import Part, TriMesh, box, cylinder, tube
 from articad.kinematics.joints import Coupling, Joint
 from articad.plan.resolve import Fit
-from articad_bench.beams import section
+from articad_bench.beams import Support, _solved, beam, section
 from articad_bench.function_checks import comes_to, largest_effort, least_width
 from articad_bench.strength_checks import bending, level_tops
 from articad_bench.subject import Subject
 from tests.bench.test_cheats import made, solid
 from tests.bench.test_checks import form
+from tests.disassembly.test_screwing import HEAD, nut, screwed, thread
 from tests.kinematics.linkages import at, joint
 
 STEEL = 7850.0
@@ -399,3 +401,118 @@ def test_what_holds_another_back_goes_first() -> None:
     q = np.array([math.pi / 2, 61.0])
     assert comes_to(subject, q)
     assert not comes_to(subject, np.array([math.pi / 2, 50.0]))
+
+
+def test_turning_a_part_into_its_thread_needs_no_force() -> None:
+    assembly = screwed(thread(5, 20) + HEAD.translate([0, 0, 20]), nut())
+    (step,) = (step for step in assembly.assembly_order().steps if step.permitted)
+
+    assert step.permitted == (("bolt", "block", "screw"),)
+    assert form({"kind": "put_together"}).judge(Subject(assembly)).ok
+
+
+def test_what_only_pushes_pushes_where_least_energy_says() -> None:
+    """Beams of random pieces on random supports, some of which only push: the deflection of least energy that sinks into none, by least squares."""
+    rng = np.random.default_rng(3)
+    for _ in range(120):
+        count = int(rng.integers(6, 30))
+        lengths, stiff = rng.uniform(5, 40, count), rng.uniform(0.2, 5, count) * 1e8
+        ends, pushing = sorted(rng.choice(count + 1, 2, replace=False)), rng.random(count + 1) < rng.uniform(0.05, 0.5)
+        both = np.isin(np.arange(count + 1), ends)
+        loads = np.where(rng.random(count) < 0.5, rng.uniform(0, 2, count), 0.0), np.where(rng.random(count + 1) < 0.2, 500.0, 0.0)
+
+        found = _solved(lengths, stiff, np.ones(count), loads, both, pushing, np.zeros(count + 1, dtype=bool))
+        assert found is not None
+        assert found.sag == pytest.approx(least_energy_sag(lengths, stiff, loads, both, pushing & ~both), rel=1e-4, abs=1e-6)
+
+
+def least_energy_sag(lengths: Any, stiff: Any, loads: Any, both: Any, pushing: Any) -> float:
+    """Return the largest deflection that minimizes u K u / 2 - f u with u = 0 where both ways are held, u <= 0 where something pushes."""
+    size = 2 * len(both)
+    K, f = np.zeros((size, size)), np.zeros(size)
+    f[::2] = loads[1]
+    for i, (h, k, even) in enumerate(zip(lengths, stiff, loads[0], strict=True)):
+        B = np.array([[1 / h, 1, -1 / h, 0], [1 / h, 0, -1 / h, 1]])  # slopes of both ends against the chord
+        K[2 * i : 2 * i + 4, 2 * i : 2 * i + 4] += B.T @ np.array([[4, 2], [2, 4]]) @ B * k / h
+        f[2 * i : 2 * i + 4] += even * h * np.array([0.5, h / 12, 0.5, -h / 12])
+    free = np.flatnonzero(~np.repeat(both, 2) | (np.arange(size) % 2 == 1))
+    scale = 1 / np.sqrt(np.diag(K)[free])
+    inverse = np.linalg.inv(K[np.ix_(free, free)] * np.outer(scale, scale))
+    rows = np.array([np.where(free == 2 * node, scale, 0.0) for node in np.flatnonzero(pushing)]).reshape(-1, len(free))
+    alone = inverse @ (scale * f[free])
+    factor = np.linalg.cholesky(rows @ inverse @ rows.T)
+    push = nnls(factor.T, np.linalg.solve(factor, rows @ alone), maxiter=10_000)[0] if len(rows) else np.zeros(0)
+    moved = np.zeros(size)
+    moved[free] = scale * (alone - inverse @ rows.T @ push)
+    return float(np.abs(moved[::2]).max())
+
+
+# ---------------------------------------------------------------------- tolerances of the measurements themselves
+
+
+@pytest.mark.parametrize("height", [9.525, 12.125, 19.05])
+def test_a_surface_is_one_whatever_its_height(height: float) -> None:
+    """Vertices that a rotation moved by 1e-12 mm, at a height that is midway between two multiples of the step by which levels are told apart."""
+    mesh = box(300, 200, 2 * height)
+    up = mesh.vertices + np.array([0, 0, 1e-12]) * np.sign(mesh.vertices[:, :1])
+    subject = Subject(of(("board", TriMesh(up, mesh.triangles)), joints=[]))
+
+    (top,) = level_tops(subject, "board")
+    assert (top.height, top.area) == pytest.approx((2 * height, 300 * 200))
+
+
+@pytest.mark.parametrize("beside", [1.0, 0.1, 0.01, 0.002])
+def test_places_that_nearly_fall_together_do_not_let_a_board_go(beside: float) -> None:
+    """The load begins so far from the end of the board, where it is held, and one support ends so far beside the other."""
+    board = box(L, B, H)
+    ends = [Support(0, 0, both_ways=True), Support(L, L, both_ways=True)]
+    across = (-L / 2 + beside, L / 2)
+
+    found = beam(board, np.array([1.0, 0, 0]), ends, FORCE, E, across, anywhere=False)
+    assert found is not None
+    assert found == pytest.approx((stress_of(FORCE * L / 8), 5 * FORCE * L**3 / (384 * E * MOMENT)), rel=5e-3)
+
+    on_blocks = [Support(0, 100, both_ways=False), Support(0, 100 + beside, both_ways=False), Support(700, L, both_ways=False)]
+    two = beam(board, np.array([1.0, 0, 0]), on_blocks[1:], FORCE, E, (-L / 2, L / 2), anywhere=False)
+    assert beam(board, np.array([1.0, 0, 0]), on_blocks, FORCE, E, (-L / 2, L / 2), anywhere=False) == pytest.approx(two, rel=5e-3)
+
+
+def test_a_board_on_one_point_is_not_held() -> None:
+    ends = (-L / 2, L / 2)
+    assert beam(box(L, B, H), np.array([1.0, 0, 0]), [Support(400, 400, both_ways=True)], FORCE, E, ends, anywhere=False) is None
+
+
+def test_parts_without_a_stated_mass_weigh_what_water_does() -> None:
+    """A file that states no mass is not weightless."""
+    heavy = arm()
+    parts = [replace(part, mass=None) for part in heavy.parts.values()]
+    assembly = Assembly.from_parts("made", parts=parts, joints=heavy.joints, ground="post")
+
+    assert largest_effort(Subject(assembly), assembly.joints[0]) == pytest.approx(0.4 * 0.02 * 0.02 * 1000 * 9.81 * 0.2, rel=1e-3)
+
+
+def test_a_line_along_the_side_of_a_part_is_no_line_through_a_stack() -> None:
+    """The side of a post leans by 1e-5 mm, as a file with few digits leaves it; a line enters the post there, half-way up."""
+    row: dict[str, Any] = {"kind": "stack", "mm": [0.1, 0.1], "pieces": [{"mm": [8, 8]}, {"mm": [20, 20]}]}
+    plates = [(f"plate{i}", placed(box(60, 60, high), 0, 0, z)) for i, (high, z) in enumerate([(5, -2.5), (8, 4), (20, 18), (5, 30.6)])]
+    post = placed(box(200, 60, 45), 128, 0, 17.5)  # its side is at x = 28 mm, where one line is; all others are outside
+    leaning = np.where(post.vertices[:, 2:] > 0, 1e-5, -1e-5) * np.array([1.0, 0, 0])
+    bodies = [*plates, ("post", TriMesh(post.vertices + leaning, post.triangles))]
+    subject = Subject(of(*bodies, joints=[fixed("plate0", name) for name, _ in bodies[1:]]))
+
+    assert form(row).judge(subject).ok
+
+
+def test_lengths_of_single_precision_are_the_nominal_ones() -> None:
+    """12.7 mm at some distance from the origin, as an STL file stores it in metres."""
+    bodies = [
+        ("left", placed(box(5, 40, 40), 97.5, 0, 0)),
+        ("plate", placed(box(12.7, 40, 40), 106.4, 0, 0)),
+        ("right", placed(box(5, 40, 40), 115.4, 0, 0)),
+    ]
+    rough = [(name, TriMesh((mesh.vertices * 1e-3).astype(np.float32).astype(float) * 1e3, mesh.triangles)) for name, mesh in bodies]
+    row: dict[str, Any] = {"kind": "stack", "along": [1, 0, 0], "pieces": [{"mm": [12.7, 12.7]}], "mm": [0.2, 0.2]}
+    subject = Subject(of(*rough, joints=[fixed("left", "plate"), fixed("left", "right")]))
+
+    assert form(row).judge(subject).ok
+    assert not form(row | {"mm": [0.201, 0.21]}).judge(subject).ok
