@@ -29,11 +29,12 @@ from articad.findings import Finding, Findings
 from articad.geometry.mass import MassProperties
 from articad.geometry.part import DEFAULT_COLOR, Part, Shape, Solid
 from articad.importers.freecad_constraints import CONSTRAINTS, Constraint, merged, planar_faces
-from articad.importers.freecad_couplings import COUPLINGS, Stated, coupling_of
+from articad.importers.freecad_couplings import COUPLINGS, PartMotions, Stated, coupling_of
 from articad.importers.freecad_document import IDENTITY, FreeCADObject, LinkedDocuments
 from articad.importers.freecad_edits import Edit, edits
 from articad.importers.freecad_materials import DENSITIES
 from articad.importers.freecad_mesh import read_mesh_kernel
+from articad.importers.freecad_standing import deviations, sizes
 from articad.importers.reading import MAX_NAME, Folder, unreadable
 from articad.importers.records import assembly_of, read_records
 from articad.kernels.archive import BadArchiveError
@@ -157,6 +158,7 @@ class _Model:
         self._numbers: dict[str, int] = {}  # by label, below which all numbers are taken
         for item in self.members:
             self._take(item)
+        self._known = frozenset(self.recorded.values())
         self.names = {item: name for name, item in self.parts.items()}
         self.grounded = self._grounded()
         self.ground = self.grounded[0]
@@ -166,6 +168,7 @@ class _Model:
         self._masses: dict[FreeCADObject, list[MassProperties | None]] = {}
         self._wrong: dict[FreeCADObject, list[Finding]] = {}  # what was said of a shape when it was read
         self._asked: set[str] = set()  # parts of which it was said
+        self._said: set[str] = set()  # parts with a finding about their shape
         self._reader = BrepReader()
 
     def _top(self) -> FreeCADObject:
@@ -225,8 +228,10 @@ class _Model:
         """Return the colour that a window of FreeCAD stored of a part, or None."""
         item = self.parts[name]
         for shown in (item, *(shape for shape, _ in self.library.shapes(self.library.container(item)))):
-            colors = self.colors.setdefault(shown.document.path, shown.document.colors())
-            if (color := colors.get(shown.name)) is not None:
+            path = shown.document.path
+            if path not in self.colors:
+                self.colors[path] = shown.document.colors()
+            if (color := self.colors[path].get(shown.name)) is not None:
                 return color
         return None
 
@@ -238,8 +243,7 @@ class _Model:
             self._wrong[container] = self.findings[start:]
         elif name not in self._asked:
             for finding in self._wrong[container]:  # each copy lacks what its source lacks
-                message = finding.message.replace(repr(finding.parts[0]), repr(name))
-                self.findings.append(replace(finding, where=f"parts.{name}", parts=(name,), message=message))
+                self._misshapen(name, finding.message.replace(repr(finding.parts[0]), repr(name)), finding.hint)
         self._asked.add(name)
         return self._solids[container]
 
@@ -258,7 +262,7 @@ class _Model:
                 solids += found
         if len(solids) == 1 and not shapes:
             return solids[0], ()
-        if not solids and not shapes and len(self.findings) == wrong and not (self.records and name in self.recorded.values()):
+        if not solids and not shapes and len(self.findings) == wrong and not (self.records and name in self._known):
             self._misshapen(name, f"Part {name!r} has no shape in the document.", "Give it a body or a solid, or delete it.")
         return None, (*(Shape(solid.mesh, name=f"{name}_{place}") for place, solid in enumerate(solids)), *shapes)
 
@@ -299,7 +303,7 @@ class _Model:
 
     def missing(self, name: str, meshes: int) -> None:
         """Report that a part that was one solid no longer is."""
-        if not any(finding.parts == (name,) and finding.code == "W_FREECAD_SHAPE" for finding in self.findings):
+        if name not in self._said:
             now = f"{meshes} shapes" if meshes else "no shape"
             self._misshapen(name, f"Part {name!r} was one solid; in the document it has {now}, so it has no mass.", "Give it one solid.")
 
@@ -353,6 +357,7 @@ class _Model:
         return any(word.search(text) for name in used for text in self.now.get(name, {"expressions": {}})["expressions"].values())
 
     def _misshapen(self, name: str, message: str, hint: str) -> None:
+        self._said.add(name)
         self.findings.append(Finding(code="W_FREECAD_SHAPE", where=f"parts.{name}", parts=(name,), message=message, hint=hint))
 
     # ------------------------------------------------------------------ joints
@@ -513,9 +518,11 @@ class _Model:
             ReadError: With the name of one that leaves motions which no joint of articad has.
         """
         constraints: dict[str, tuple[Constraint, FreeCADObject, str]] = {}
+        taken, numbers = {joint.name for joint in joints}, dict[str, int]()
         for item, kind in rows:
             made = self.constraint(item, kind)
-            made = replace(made, name=_free(made.name, {*constraints, *(joint.name for joint in joints)}))
+            made = replace(made, name=_free(made.name, taken, numbers))
+            taken.add(made.name)
             constraints[made.name] = (made, item, kind)
         found = merged(joints, [made for made, _, _ in constraints.values()], self.poses)
         if isinstance(found, tuple):
@@ -565,11 +572,12 @@ class _Model:
             else:
                 raise self.refused(item, kind)
         made = self.restricted(made, restricting)
-        return made, [self.coupled(item, told, made) for item, told in stated]
+        motions = PartMotions(made, self.poses)
+        return made, [self.coupled(item, told, motions) for item, told in stated]
 
-    def coupled(self, item: FreeCADObject, told: Stated, joints: list[Joint]) -> Coupling:
+    def coupled(self, item: FreeCADObject, told: Stated, motions: PartMotions) -> Coupling:
         """Return the coupling that a joint of FreeCAD's means, or refuse the joint by its name."""
-        coupling = coupling_of(told, joints, self.poses)
+        coupling = coupling_of(told, motions)
         if isinstance(coupling, str):
             raise self.refused(item, told.kind, coupling)
         return coupling
@@ -578,14 +586,10 @@ class _Model:
         """Yield the joints whose two frames stand otherwise in the document than their type allows.
 
         FreeCAD keeps the placements of the last solve, and its solver drops constraints that it takes for redundant: a slider and a hinge
-        of one loop may both be a degree askew in a document that it calls solved. With T the poses of the parts, C the frames of the joint,
-        F the turn of an opposed one and J(q) its motion, the deviation is J(q)⁻¹ C_p⁻¹ T_p⁻¹ T_c C_c F at the coordinates q nearest to it.
+        of one loop may both be a degree askew in a document that it calls solved.
         """
-        for joint in joints:
-            flip = FLIP if joint.mate is Mate.OPPOSED else IDENTITY
-            D = (self.poses[joint.parent] @ joint.T_parent_connector).inverse() @ self.poses[joint.child] @ joint.T_child_connector @ flip
-            left = joint.motion(joint.rest).inverse() @ D
-            far, turned = float(np.linalg.norm(left.translation)), float(np.linalg.norm(left.log()[3:]))
+        joints = list(joints)
+        for joint, far, turned in zip(joints, *map(np.ndarray.tolist, deviations(joints, self.poses)), strict=True):
             if far <= STANDS_MM and turned <= STANDS_RAD:
                 continue
             sizes = [f"{far:.4g} mm apart"] if far > STANDS_MM else []
@@ -625,12 +629,13 @@ class _Model:
 
     def loose(self, joints: list[Joint]) -> list[Joint]:
         """Return joints to the ground for parts that no joint connects to it: fixed ones for grounded parts, free ones and a finding for others."""
-        reached, made = _reached(self.ground, joints), []
+        near, grounded = _neighbours(joints), set(self.grounded)
+        reached, made = _reached(self.ground, near), []
         taken = {joint.name for joint in joints}
         for name in self.parts:
             if name in reached:
                 continue
-            held = name in self.grounded
+            held = name in grounded
             joint_name = _free(f"{name}_{'grounded' if held else 'loose'}", taken)
             taken.add(joint_name)
             T = self.poses[self.ground].inverse() @ self.poses[name]
@@ -649,7 +654,7 @@ class _Model:
                     rest=() if held else tuple(map(float, T.data)),
                 )
             )
-            reached |= _reached(name, joints)
+            reached |= _reached(name, near)
             if held:
                 continue
             message = f"No joint connects part {name!r} to the grounded part. It is loose and has a free joint."
@@ -991,9 +996,8 @@ def _elsewhere(model: _Model, made: Assembly) -> Iterator[Finding]:
     except LoopError:  # whoever needs poses is told of the loop
         yield from model.apart(made.joints)
         return
-    for name, T in poses.items():
-        D = T.inverse() @ model.poses[name]
-        far, turned = float(np.linalg.norm(D.translation)), float(np.linalg.norm(D.log()[3:]))
+    D = SE3.stack(list(poses.values())).inverse() @ SE3.stack([model.poses[name] for name in poses])
+    for name, far, turned in zip(poses, *map(np.ndarray.tolist, sizes(D)), strict=True):
         if far > STANDS_MM or turned > STANDS_RAD:
             yield Finding(
                 code="W_FREECAD_ELSEWHERE",
@@ -1007,16 +1011,22 @@ def _elsewhere(model: _Model, made: Assembly) -> Iterator[Finding]:
             )
 
 
-def _reached(start: str, joints: list[Joint]) -> set[str]:
-    """Return the parts that joints connect to one."""
+def _neighbours(joints: Iterable[Joint]) -> dict[str, list[str]]:
+    """Return the parts that joints connect to each part."""
+    found: dict[str, list[str]] = {}
+    for joint in joints:
+        found.setdefault(joint.parent, []).append(joint.child)
+        found.setdefault(joint.child, []).append(joint.parent)
+    return found
+
+
+def _reached(start: str, neighbours: Mapping[str, Sequence[str]]) -> set[str]:
+    """Return the parts that joints connect to one, directly or not."""
     found, waiting = {start}, [start]
     while waiting:
-        here = waiting.pop()
-        for joint in joints:
-            for one, other in ((joint.parent, joint.child), (joint.child, joint.parent)):
-                if one == here and other not in found:
-                    found.add(other)
-                    waiting.append(other)
+        new = [name for name in neighbours.get(waiting.pop(), ()) if name not in found]
+        found.update(new)
+        waiting += new
     return found
 
 

@@ -63,16 +63,20 @@ def merged(joints: Sequence[Joint], constraints: Sequence[Constraint], poses: Ma
         constraints: The constraints, of any parts.
         poses: Poses of the parts in the document.
     """
-    made = list(joints)
-    for pair in dict.fromkeys(tuple(sorted(constraint.parts)) for constraint in constraints):
-        here = [constraint for constraint in constraints if tuple(sorted(constraint.parts)) == pair]
-        held = [joint for joint in made if tuple(sorted((joint.parent, joint.child))) == pair and joint.type is not JointType.FREE]
-        one = _one_joint(held, here, poses)
+    here, held = dict[tuple[str, ...], list[Constraint]](), dict[tuple[str, ...], list[Joint]]()
+    for constraint in constraints:
+        here.setdefault(tuple(sorted(constraint.parts)), []).append(constraint)
+    for joint in joints:
+        if joint.type is not JointType.FREE:
+            held.setdefault(tuple(sorted((joint.parent, joint.child))), []).append(joint)
+    gone, made = set[str](), []
+    for pair, stated in here.items():
+        one = _one_joint(held.get(pair, []), stated, poses)
         if isinstance(one, str):
-            return here[0], one
-        made = [joint for joint in made if joint not in held]
+            return stated[0], one
+        gone.update(joint.name for joint in held.get(pair, []))
         made.append(one)
-    return made
+    return [*(joint for joint in joints if joint.name not in gone), *made]
 
 
 def _one_joint(held: list[Joint], here: list[Constraint], poses: Mapping[str, SE3]) -> Joint | str:

@@ -8,7 +8,7 @@ moves with the rim of its pinion.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,21 +62,68 @@ class _PartMotion:
     point: FloatArray
 
 
-def coupling_of(stated: Stated, joints: Sequence[Joint], poses: Mapping[str, SE3]) -> Coupling | str:
+class PartMotions:
+    """The motions that joints give parts: each joint is looked at once, however many couplings a part has.
+
+    Args:
+        joints: The joints.
+        poses: Poses of the parts in the assembly.
+    """
+
+    def __init__(self, joints: Iterable[Joint], poses: Mapping[str, SE3]) -> None:
+        self._poses = poses
+        self._joints: dict[str, list[Joint]] = {}
+        for joint in joints:
+            for part in {joint.parent, joint.child}:
+                self._joints.setdefault(part, []).append(joint)
+        self._found: dict[tuple[str, bool], tuple[list[_PartMotion], FloatArray, FloatArray]] = {}
+
+    def axis(self, part: str, frame: SE3, *, turns: bool) -> _PartMotion | None:
+        """Return the coordinate that turns or shifts a part; of several turns, the one about the frame's z axis."""
+        if (part, turns) not in self._found:
+            made = list(self._of(part, turns=turns))
+            rows = [[motion.direction, motion.point] for motion in made]
+            directions, points = np.moveaxis(np.array(rows).reshape(-1, 2, 3), 1, 0)
+            self._found[part, turns] = made, directions, points
+        found, directions, points = self._found[part, turns]
+        if turns:
+            on = np.flatnonzero(_on_line(directions, points, frame.rotation[:, 2], frame.translation))
+            found = [found[place] for place in on[:2]] or found
+        return found[0] if len(found) == 1 else None
+
+    def _of(self, part: str, *, turns: bool) -> Iterator[_PartMotion]:
+        """Yield the coordinates of all joints that turn or shift a part."""
+        for joint in self._joints.get(part, ()):
+            at = self._poses[joint.parent] @ joint.T_parent_connector
+            sense = 1.0 if joint.child == part else -1.0
+            if joint.type in (JointType.REVOLUTE, JointType.SLIDER, JointType.CYLINDRICAL):
+                columns = [column for column in joint.columns if (column.unit == "rad") is turns]
+                yield from (_PartMotion(column.name, turns, sense * at.rotation[:, 2], at.translation) for column in columns)
+
+
+def _on_line(directions: FloatArray, points: FloatArray, z: FloatArray, point: FloatArray) -> NDArray[np.bool_]:
+    """Return which axes `(n, 3)` lie on the line along a direction through a point."""
+    across = np.cross(directions, z)
+    away = point - points
+    off = away - (away @ z)[:, None] * z
+    on: NDArray[np.bool_] = (np.linalg.norm(across, axis=-1) < _PARALLEL) & (np.linalg.norm(off, axis=-1) < _NEAR_MM)
+    return on
+
+
+def coupling_of(stated: Stated, motions: PartMotions) -> Coupling | str:
     """Return the coupling, or the reason why there is none: the end of a sentence whose subject is the joint.
 
     Args:
         stated: The data in FreeCAD.
-        joints: The other joints.
-        poses: Poses of the parts in the assembly.
+        motions: Of the parts by the other joints.
     """
     if not stated.distance > 0 or (stated.kind in ("Gears", "Belt") and not stated.distance_2 > 0):
         return "has a radius or a lead that is not positive"
     sides = list(zip(stated.parts, stated.frames, strict=True))
-    turns = [_axis(joints, poses, part, frame, turns=True) for part, frame in sides]
+    turns = [motions.axis(part, frame, turns=True) for part, frame in sides]
     if stated.kind in ("Gears", "Belt"):
         return _wheels(stated, *turns)
-    slides = [_axis(joints, poses, part, frame, turns=False) for part, frame in sides]
+    slides = [motions.axis(part, frame, turns=False) for part, frame in sides]
     for one, other in ((0, 1), (1, 0), (0, 0), (1, 1)):
         turn, slide = turns[one], slides[other]
         if turn is not None and slide is not None and turn.column.partition(".")[0] != slide.column.partition(".")[0]:
@@ -112,27 +159,3 @@ def _rack(stated: Stated, turn: _PartMotion, slide: _PartMotion, rack: SE3) -> C
 
 def _made(stated: Stated, a: _PartMotion, b: _PartMotion, ratio: float) -> Coupling:
     return Coupling(stated.name, COUPLINGS[stated.kind], a.column, b.column, ratio)
-
-
-def _axis(joints: Sequence[Joint], poses: Mapping[str, SE3], part: str, frame: SE3, *, turns: bool) -> _PartMotion | None:
-    """Return the coordinate that turns or shifts a part; of several turns, the one about the frame's z axis."""
-    found = []
-    for joint in joints:
-        if part not in (joint.parent, joint.child):
-            continue
-        at = poses[joint.parent] @ joint.T_parent_connector
-        sense = 1.0 if joint.child == part else -1.0
-        if joint.type in (JointType.REVOLUTE, JointType.SLIDER, JointType.CYLINDRICAL):
-            columns = [column for column in joint.columns if (column.unit == "rad") is turns]
-            found += [_PartMotion(column.name, turns, sense * at.rotation[:, 2], at.translation) for column in columns]
-    if turns:
-        z = frame.rotation[:, 2]
-        on = [axis for axis in found if _same_line(axis, z, frame.translation)]
-        found = on or found
-    return found[0] if len(found) == 1 else None
-
-
-def _same_line(axis: _PartMotion, z: FloatArray, point: FloatArray) -> bool:
-    across = np.cross(axis.direction, z)
-    away = point - axis.point
-    return bool(np.linalg.norm(across) < _PARALLEL and np.linalg.norm(away - np.dot(away, z) * z) < _NEAR_MM)

@@ -173,7 +173,7 @@ class FreeCADDocument:
 
     def results(self, members: list[str]) -> list[str]:
         """Return the shapes among the members of a group from which no other member is made."""
-        shapes = [name for name in members if self.is_shape(name)]
+        shapes = dict.fromkeys(name for name in members if self.is_shape(name))
         used = {link for name in shapes for key in self._properties[name] if key != "Group" for link in self.links(name, str(key))}
         held = [name for name in members if (name in shapes or self.types.get(name) in (*_GROUPS, *_LINKS)) and name not in used]
         shown = [name for name in held if self.truth(name, "Visibility", default=True)]
