@@ -16,9 +16,12 @@ from pydantic import Field
 
 from articad.arrays import FloatArray
 from articad.assembly import Assembly
+from articad.certificates.fits import CONTACT_MM
+from articad.connectors import SE3, Mate
 from articad.disassembly.ways import Ways, ways_out
-from articad.interference.gauge import Gauge
-from articad.kinematics.joints import Joint, JointType
+from articad.interference.freedoms import freedoms
+from articad.interference.gauge import Gauge, placed
+from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
 from articad_bench.check import Bounds, Vector, in_words
@@ -371,7 +374,9 @@ class Moves(Check):
 class Gap(Check):
     """Parts that a joint connects keep this distance at rest; `within` counts only surface this close to the joint's axis [mm].
 
-    With `bodies`, what is fixed to the parts counts as well: the cap of a bearing with its base.
+    With `bodies`, what is fixed to the parts counts as well: the cap of a bearing with its base. Where a shoulder or a washer lies closer,
+    or a pin that is a part of its own carries the joint, the least play across the joint counts: an eye that rests on its bracket has the
+    gap of its pin.
     """
 
     kind: Literal["gap"] = "gap"
@@ -387,12 +392,49 @@ class Gap(Check):
         return f"{in_words(self.number)} joints ({self.joint}) with a gap of {in_words(self.mm)} mm{between}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        near = Fit(within=self.within)
-        joints = [joint for joint in self.joint.found(subject) if _shaped(subject, joint)]
-        gaps = [_between_bodies(subject, joint) if self.bodies else Gauge(subject.scene, joint, near).rest() for joint in joints]
+        gaps = [self._gap(subject, joint) for joint in self.joint.found(subject) if _shaped(subject, joint)]
         count = sum(self.mm[0] <= gap <= self.mm[1] for gap in gaps)
         told = ", ".join(f"{gap:.3g}" for gap in gaps)
         return self.number[0] <= count <= self.number[1], f"{count} ({told} mm)"
+
+    def _gap(self, subject: Subject, joint: Joint) -> float:
+        near = Fit(within=self.within)
+        gap = _between_bodies(subject, joint) if self.bodies else Gauge(subject.scene, joint, near).rest()
+        if gap < -CONTACT_MM or self.mm[0] <= gap <= self.mm[1]:
+            return gap
+        # a little off its seat to either side, edges that cross each other do not touch
+        plays = (_least_play(subject, joint, near, lifted) for lifted in (0.0, CONTACT_MM, -CONTACT_MM))
+        return max((play for play in plays if play is not None), default=gap)
+
+
+def _ways_across(kind: JointType) -> list[SE3]:
+    """Return turns of the z axis into the directions in which a joint holds its child."""
+    sideways = [] if kind is JointType.PLANAR else [SE3.rot_y(np.pi / 2), SE3.rot_x(np.pi / 2)]
+    return [*sideways, *([SE3.identity()] if kind in (JointType.PLANAR, JointType.BALL) else [])]
+
+
+def _least_play(subject: Subject, joint: Joint, fit: Fit, lifted: float) -> float | None:
+    """Return the least play over directions across a joint [mm], its child moved along the axis; None if nothing stops it, or it overlaps there."""
+    axis = joint.T_parent_connector
+    T = axis @ SE3.trans(0, 0, lifted) @ axis.inverse() @ SE3.from_matrix(placed(joint, [one.rest for one in freedoms(joint)]))
+    plays = []
+    for turned in _ways_across(joint.type):
+        frame = axis @ turned
+        along = replace(
+            joint,
+            type=JointType.PLANAR,
+            T_parent_connector=frame,
+            T_child_connector=T.inverse() @ frame,
+            mate=Mate.ALIGNED,
+            rest=JointType.PLANAR.neutral,
+            limits=JointLimits((0.0,) * 3, (0.0,) * 3),
+            lead=0.0,
+        )
+        gauge = Gauge(subject.scene, along, fit)
+        if lifted and gauge.rest() <= 0:
+            return None
+        plays.append(gauge.play())
+    return min((play for play in plays if play is not None), default=None)
 
 
 def _between_bodies(subject: Subject, joint: Joint) -> float:

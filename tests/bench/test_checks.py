@@ -9,6 +9,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
+import manifold3d as m3
 import pytest
 from pydantic import TypeAdapter
 
@@ -24,6 +25,7 @@ from articad_bench.spacing_checks import spacings
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, tasks_in
 from tests.bench.wrong import VARIANTS, wrong_for
+from tests.interference.mechanisms import manifold_mesh
 from tests.kinematics.linkages import at, joint
 
 pytestmark = pytest.mark.slow
@@ -214,3 +216,63 @@ def test_a_ball_goes_from_side_to_side_of_its_cone() -> None:
 
     assert form(check).judge(of(tilting)).ok
     assert not form(check).judge(of(free)).ok
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("lifted", [0.0, 0.05, 5.0])
+@pytest.mark.parametrize(("bore", "fits"), [(8.2, True), (8.01, False), (9.0, False)])
+def test_a_part_that_lies_on_a_shoulder_has_the_gap_of_its_pin(bore: float, fits: bool, lifted: float, turned: bool) -> None:
+    """An eye with a bar drops over a pin: on its bracket, whose edges cross those of the bar, just above it or high above it."""
+    pin = m3.Manifold.cylinder(62, 8, 8, 64) + m3.Manifold.cylinder(16, 15, 15, 64).translate([0, 0, -16])
+    eye = m3.Manifold.cylinder(40, 15, 15, 64) + m3.Manifold.cube([60, 6, 40]).translate([0, -15, 0])
+    eye -= m3.Manifold.cylinder(100, bore, bore, 64, center=True)
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in (("pin", pin), ("eye", eye))]
+    ends = [("pin", at(0, 0, lifted)), ("eye", at(0))]
+    hung = joint("hung", "cylindrical", *(ends[::-1] if turned else ends), limits=[(-9.0, 9.0), (-1.0, 1.0)])
+    subject = Subject(Assembly.from_parts("hinge", parts=parts, joints=[hung], ground="pin"))
+
+    judged = form({"kind": "gap", "joint": {"type": "cylindrical"}, "mm": [0.1, 0.3]}).judge(subject)
+
+    assert judged.ok is fits, judged
+
+
+def test_a_part_that_sits_in_its_shoulder_has_no_gap() -> None:
+    """The eye overlaps its bracket by 0.5 mm: the play of its pin does not excuse it."""
+    pin = m3.Manifold.cylinder(62, 8, 8, 64) + m3.Manifold.cylinder(16, 15, 15, 64).translate([0, 0, -15.5])
+    eye = m3.Manifold.cylinder(40, 15, 15, 64) - m3.Manifold.cylinder(100, 8.2, 8.2, 64, center=True)
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in (("pin", pin), ("eye", eye))]
+    hung = joint("hung", "revolute", ("pin", at(0)), ("eye", at(0)), limits=[(-1.0, 1.0)])
+    subject = Subject(Assembly.from_parts("hinge", parts=parts, joints=[hung], ground="pin"))
+
+    assert not form({"kind": "gap", "joint": {"type": "revolute"}, "mm": [0.1, 0.3]}).judge(subject).ok
+
+
+@pytest.mark.parametrize(("high", "fits"), [(8.2, True), (8.0, False)])
+def test_a_pin_that_is_tight_in_one_direction_has_no_gap(high: float, fits: bool) -> None:
+    """A bore that is not round, on a shoulder."""
+    pin = m3.Manifold.cylinder(62, 8, 8, 64) + m3.Manifold.cylinder(16, 15, 15, 64).translate([0, 0, -16])
+    bore = m3.Manifold.cylinder(100, 8.2, 8.2, 64, center=True).scale([1, high / 8.2, 1])
+    eye = m3.Manifold.cylinder(40, 15, 15, 64) - bore
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in (("pin", pin), ("eye", eye))]
+    hung = joint("hung", "revolute", ("pin", at(0)), ("eye", at(0)), limits=[(-1.0, 1.0)])
+    subject = Subject(Assembly.from_parts("hinge", parts=parts, joints=[hung], ground="pin"))
+
+    assert form({"kind": "gap", "joint": {"type": "revolute"}, "mm": [0.1, 0.3]}).judge(subject).ok is fits
+
+
+@pytest.mark.parametrize("bodies", [False, True])
+@pytest.mark.parametrize(("thick", "fits"), [(7.8, True), (7.99, False), (7.0, False)])
+def test_a_pin_of_its_own_holds_the_gap_of_the_parts_that_it_joins(thick: float, fits: bool, bodies: bool) -> None:
+    """The joint is between fork and eye, 1 mm apart; the pin is fixed in the fork."""
+    bored = m3.Manifold.cylinder(99, 8, 8, 64, center=True)
+    fork = m3.Manifold.cube([40, 40, 10]).translate([-20, -20, -11]) - bored
+    eye = m3.Manifold.cylinder(20, 15, 15, 64) - bored
+    pin = m3.Manifold.cylinder(31, thick, thick, 64).translate([0, 0, -11])
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in (("fork", fork), ("eye", eye), ("pin", pin))]
+    pressed = joint("pressed", "fixed", ("fork", at(0)), ("pin", at(0)))
+    swing = joint("swing", "revolute", ("fork", at(0)), ("eye", at(0)), limits=[(-1.0, 1.0)])
+    subject = Subject(Assembly.from_parts("hinge", parts=parts, joints=[pressed, swing], ground="fork"))
+
+    judged = form({"kind": "gap", "joint": {"type": "revolute"}, "mm": [0.1, 0.3], "bodies": bodies}).judge(subject)
+
+    assert judged.ok is fits, judged
