@@ -209,7 +209,7 @@ ABOUT: Final = """\
 explains what is proven.
 
 - **seconds**: processor time of the search, without the build of the parts.
-- **proven**: every step's path is proven. *n by force*: so many pairs of parts are joined as the plan states (snap, press, circlip, bought as one).
+- **proven**: every step's path is proven. *n by force*: so many pairs of parts are joined as the plan states (snap, press, circlip, bought as one), or turned into each other's thread.
 - **sampled**: every path was examined again with manifold3d: Booleans of the solids at 60 places of each move, for every moving and every placed part
   whose boxes meet there. The number is by how much the deepest overlap is deeper than the joint of the two parts allows: negative means clear of that.
 - What no order puts together is named below, with what was seen on its picture: what blocks it, or how a person puts it together all the same.

@@ -84,7 +84,7 @@ def assembly_sheet(
 
 
 def _draw_section(sheet: DrawingSheet, drawn: DrawnView, room: tuple[float, float, float, float]) -> None:
-    """Draw a section at the largest scale at which it fits into a room (left, bottom, right, top); hatches of neighbours differ."""
+    """Draw a section at the largest scale at which it fits into a room (left, bottom, right, top); the hatches of one cut face and the next differ."""
     points = np.concatenate([sampled(line) for line in drawn.visible])
     low, high = points.min(axis=0), points.max(axis=0)
     wide, tall = room[2] - room[0], room[3] - room[1] - 8.0

@@ -207,7 +207,7 @@ def _reach(subject: Subject, name: str) -> float:
 class Folds(Check):
     """At some pose of its range it fits into a box, and comes there from rest without a collision; at another it is at least so large [mm].
 
-    Sides are those of the box along the axes, in any order. The way from rest is sampled, not proven.
+    Sides are those of the box along the axes, each list by size: the least with the least, any as 0. The way from rest is sampled, not proven.
     """
 
     kind: Literal["folds"] = "folds"

@@ -166,7 +166,7 @@ def _motions(wanted: Sequence[_Cylinder], found: Sequence[_Cylinder]) -> Iterato
                 if max(off, abs(float(np.linalg.norm(r - q)) - float(np.linalg.norm(c - b)))) > near:
                     continue
                 tries += 1
-                if tries > _MOST_TRIES:  # a field of equal holes: what has not been found by now is not there
+                if tries > _MOST_TRIES:  # a field of equal holes: no further motion is tried
                     return
                 yield _motion(np.array([a, b, c]), np.array([p, q, r]))
 

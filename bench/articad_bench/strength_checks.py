@@ -24,7 +24,7 @@ UP: Final = 0.999  # cosine of the lean of a level surface
 LEVEL_MM: Final = 0.05  # triangles within this height are one surface
 STRIP: Final = 1 / 3  # of the width of a board: its middle, which what lies all round it does not carry both ways
 TURNS: Final = 0.5  # cosine of the angle of a pin to the line about which a board bends, from which it lets the board turn
-CLAMPED: Final = 2.0  # times the thickness of a board: what is fixed to it along more than this, or half of it, does not let it turn
+CLAMPED: Final = 2.0  # times the thickness of a board: what is fixed to it along so much, or along half of the board, does not let it turn
 _PINS: Final = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.BALL, JointType.UNIVERSAL})
 
 
@@ -55,9 +55,9 @@ class Carries(Check):
 
     A board is a part with a level top of at least these sides. Its section is measured all along it. Parts that reach the ground, or the product's fixed
     part, without this board carry it where they touch it: what only touches it from below pushes, what is fixed to it holds both ways, and
-    does not let it turn where it reaches along twice the thickness of the board, or half of it, and a pin lets it turn about its axis. Both directions of the
-    board are looked at, and the worse one counts; what lies all round a board carries the middle third of it in the better direction. The load
-    lies evenly on the whole surface, or on any one place of it.
+    does not let it turn where it reaches along twice the thickness of the board, or along half of the board, and a pin lets it turn about its axis.
+    Both directions of the board are looked at, and the worse one counts; what lies all round a board carries the middle third of it in the better
+    direction. The load lies evenly on the whole surface, or on any one place of it.
 
     Attributes:
         kg: Load on each board.

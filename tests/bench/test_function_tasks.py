@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from articad_bench.function_checks import Folds
 from articad_bench.reference import reference
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, tasks_in
@@ -70,6 +71,15 @@ def test_each_task_of_function_has_a_cheap_answer() -> None:
     names = [task.name for _, task in tasks_in(TASKS) if task.name.startswith(("brief_", "stack_"))]
 
     assert sorted(CHEAP) == names
+
+
+def test_what_is_folded_all_the_time_is_not_open() -> None:
+    """Sides are compared by size: a demand on the longest side alone may be met by the folded product."""
+    for _, task in tasks_in(TASKS):
+        for check in task.checks:
+            if isinstance(check, Folds) and any(check.opens):
+                opened = sorted(side or 0.0 for side in check.opens)
+                assert any(side > folded for side, folded in zip(opened, sorted(check.into), strict=True)), task.name
 
 
 @pytest.mark.slow
