@@ -142,6 +142,8 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
         ReadError: If the format cannot be read, or the file cannot.
     """
     path = Path(path)
+    if not path.exists():
+        raise ReadError.at(path, f"There is no {path}.", "Correct the name.", said=f"There is no {path}.")
     if path.suffix.lower() == ".xacro":
         return NAMED["urdf"].read(path, root=root, fuse=fuse, srdf=srdf)
     if path.is_dir():

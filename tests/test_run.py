@@ -333,12 +333,13 @@ def test_a_strangers_export_cannot_name_files_outside(tmp_path: Path, name: str)
     Run.create(RunRequest(prompt="a box"), out=tmp_path / "run").close()
     folder = tmp_path / "run" / "export" / "urdf"
     folder.mkdir(parents=True)
-    (folder / "losses.json").write_text(json.dumps({"files": {name: 3}}))
+    (folder / "losses.json").write_text(json.dumps({"ok": True, "findings": [], "rows": [], "files": {name: 3}}))
 
     with pytest.raises(ReadError, match="outside its folder"):
         Run.view(tmp_path / "run").exports()
-    (folder / "losses.json").write_text(json.dumps({"files": [3]}))
-    assert Run.view(tmp_path / "run").exports()["urdf"]["main"] == str(folder)
+    (folder / "losses.json").write_text(json.dumps({"ok": True, "findings": [], "rows": [], "files": [3]}))
+    with pytest.raises(ReadError, match="files"):
+        Run.view(tmp_path / "run").exports()
 
 
 def test_a_run_may_itself_be_reached_by_a_link(tmp_path: Path) -> None:

@@ -220,15 +220,44 @@ def test_what_is_no_json_object_is_said_to_be_none(text: str, work: Path, say: S
     assert "defect" not in said
 
 
-@pytest.mark.parametrize(
-    "command", ["check", "build", "show", "sim", "audit", "certify", "export", "edit", "resume", "replay", "verify-certificate"]
-)
-def test_what_is_not_there_cannot_be_gone_on_with(command: str, work: Path, say: Say) -> None:
-    more = {"export": ("--to", "urdf"), "edit": ("make it longer",)}.get(command, ())
-    code, said = say(command, "nothing.json" if command == "verify-certificate" else "nothing", *more)
+NOT_THERE = """
+check X
+build X
+show X
+sim X
+audit X
+certify X
+export X --to urdf
+edit X longer
+resume X
+replay X
+verify-certificate X.json
+order X
+manual X
+drawing X
+bom X
+render X
+part X lid
+pull X X.FCStd
+convert X out.urdf
+adopt X --out out
+batch X
+bench score X
+bench table X
+bench judge X
+memory import X
+"""
+
+
+@pytest.mark.parametrize("name", ["nothing", "nothing.urdf", "nothing.igs"])
+@pytest.mark.parametrize("line", NOT_THERE.strip().split("\n"))
+def test_what_is_not_there_cannot_be_gone_on_with(line: str, name: str, work: Path, say: Say) -> None:
+    code, said = say(*line.replace("X", name).split())
     assert code == CANNOT_GO_ON
-    assert "nothing" in said
+    assert name in said
     assert "KEY" not in said  # no key is asked for before it is known what for
+    assert "extension" not in said  # what is not there has none
+    assert "at the named place" not in said  # nor a place in it
 
 
 def test_empty_folders_and_folders_in_the_place_of_files(work: Path, say: Say) -> None:

@@ -74,7 +74,7 @@ class Base:
                 "scripts": {name: script.decode() for name in records if (script := run.script(name)) is not None},
                 "files": {name: run.part_files(name) for name in records},
                 "digests": {name: record.get("digests", {}) for name, record in records.items()},
-                "meshes": {name: record["shape"]["mesh_sha256"] for name, record in records.items()},
+                "meshes": {name: record.get("shape", {}).get("mesh_sha256") for name, record in records.items()},
                 "checks": checks,
             }
         )

@@ -127,7 +127,7 @@ def remember(run: Run, store: ExperienceStore) -> Case | None:
     if text is None or checks is None:
         return None
     resolved = resolve(AssemblyPlan.loads(text))
-    scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
+    scripts = {name: script for name in run.part_names() if name in resolved.parts and (script := run.script(name)) is not None}
     scripts = {name: script for name, script in scripts.items() if not script.endswith(ENDING)}  # not examples: they define no connectors
     verdict, review = run.verdict() or {}, run.review() or {}
     measured = [finding for finding in checks["findings"] if finding["severity"] == "error"]

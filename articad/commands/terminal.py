@@ -260,7 +260,7 @@ class Terminal:
         return f"\x1b[{code}m{text}\x1b[0m" if self._is_watched(stream) else text
 
     def _line_of(self, finding: Report, stream: TextIO) -> str:
-        code = self._painted(finding["code"], {"error": "31", "warning": "33", "info": "36"}[finding["severity"]], stream)
+        code = self._painted(on_one_line(finding["code"]), {"error": "31", "warning": "33", "info": "36"}[finding["severity"]], stream)
         from articad.findings import measured_against
 
         numbers = measured_against(finding)

@@ -26,6 +26,7 @@ from articad.plan.brief import brief
 from articad.plan.schema import AssemblyPlan
 from articad.processes import scratch
 from articad.report import Documents, report_page
+from articad.runs.forms import FINDING, misfit
 from articad.runs.run import Run
 
 Report = dict[str, Any]
@@ -92,7 +93,7 @@ def documents_of(run: Run) -> Documents:
         certificate=run.certificate(),
         verdict=run.verdict(),
         exports=exports,
-        replies=tuple(record for step in run.replies() if (record := run.reply(step)) is not None),
+        replies=run.talks(),
         plan=run.plan_text(),
         files=run.results(),
     )
@@ -165,7 +166,8 @@ def _faults(certificate: bytes, meshes: Mapping[str, bytes]) -> list[str]:
 
 def _hurried(run: Run) -> list[Report]:
     """Return the findings that are only in the trace, each once."""
-    found = {event["where"]: event for event in run.events() if event.get("event") == "finding" and event.get("code") in HURRIED}
+    told = (event for event in run.events() if event.get("event") == "finding" and not misfit(event, FINDING))
+    found = {event["where"]: event for event in told if event["code"] in HURRIED}
     return [{key: value for key, value in event.items() if key not in {"t", "event"}} for event in found.values()]
 
 

@@ -10,6 +10,8 @@ from __future__ import annotations
 import contextlib
 import errno
 import hashlib
+import io
+import itertools
 import json
 import os
 import re
@@ -20,6 +22,7 @@ import tempfile
 import threading
 import time
 import unicodedata
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -27,9 +30,10 @@ from typing import Any, Final, Literal, Self
 
 from articad.aliases import Json
 from articad.errors import ReadError, RunError, WriteError
-from articad.files import RECORD_BYTES, read_file
+from articad.files import PLAN_BYTES, RECORD_BYTES, SCRIPT_BYTES, read_file
 from articad.findings import Finding
 from articad.processes import scratch
+from articad.runs.forms import misfit_of
 
 try:
     import fcntl
@@ -74,6 +78,13 @@ _IMAGE_FILE = re.compile(rf"{_IMAGES}/[0-9]{{1,6}}\.(png|jpg|gif|webp)")
 _SLUG_LENGTH = 40  # characters of the prompt in a run's name: enough to recognise it in a listing
 _NAME_TRIES = 20  # random names to try before giving up; two equal ones have a chance of 1 in 65536
 _IMAGE_LIMIT = 20 * 2**20  # bytes; no provider accepts larger ones
+_IMAGES_LIMIT = 10 * _IMAGE_LIMIT  # of all pictures of a request together
+_JSON_BYTES: Final = 64 << 20  # of one record; those of a product of 2,000 parts have a tenth
+_JSON_VALUES: Final = 4_000_000  # of all records that one view of a run has read: each takes up to 80 bytes
+_LINE_BYTES: Final = 1 << 20  # of one line of the trace
+_LINES: Final = 1_000_000  # of the trace
+_COUNTED: Final = (b",", b"[", b"{", b":")
+"""What begins or ends each value of JSON: at least as many as there are values."""
 _IMAGE_KINDS = {b"\x89PNG\r\n\x1a\n": ("image/png", "png"), b"\xff\xd8\xff": ("image/jpeg", "jpg"), b"GIF8": ("image/gif", "gif")}
 
 
@@ -137,6 +148,11 @@ class RunRequest:
     images: tuple[UserImage, ...] = ()
     options: Mapping[str, Any] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        if (size := sum(len(image.content) for image in self.images)) > _IMAGES_LIMIT:
+            told = f"The pictures have {size / 2**20:.0f} MiB together; at most {_IMAGES_LIMIT // 2**20} are accepted."
+            raise _unreadable("images", told)
+
     def to_json(self, version: str) -> Json:
         """Return `request.json`; `version` is that of articad."""
         images = [
@@ -165,6 +181,7 @@ class Run:
         self.request = request
         self._lock = lock
         self._tracing = threading.Lock()
+        self._weights: dict[str, int] = {}  # values of the records that were read, by name
 
     # ------------------------------------------------------------------ opening
 
@@ -253,7 +270,7 @@ class Run:
 
     def requirements(self) -> Json | None:
         """Return the analysis of the request, or None."""
-        return self._read_json(_REQUIREMENTS)
+        return self._read_json(_REQUIREMENTS, "requirements")
 
     def save_requirements(self, requirements: Json) -> None:
         """Save the analysis of the request."""
@@ -261,7 +278,7 @@ class Run:
 
     def alternatives(self) -> Json | None:
         """Return the report `articad.alternatives/1`, or None."""
-        return self._read_json(_ALTERNATIVES)
+        return self._read_json(_ALTERNATIVES, "alternatives")
 
     def save_alternatives(self, report: Json) -> None:
         """Save the alternatives for an open request, and the choice."""
@@ -283,6 +300,10 @@ class Run:
         """Return the steps that have a reply."""
         return tuple(sorted(file.stem.replace(".", "/") for file in (self.path / _REPLIES).glob("*.json")))
 
+    def talks(self) -> tuple[Json, ...]:
+        """Return the recorded requests and replies of all steps, whole enough to be shown."""
+        return tuple(record for step in self.replies() if (record := self._read_json(_reply_file(step), "reply")) is not None)
+
     def save_reply(self, step: str, record: Json) -> None:
         """Save a reply; an earlier one to a different request at the same step is moved aside, not lost."""
         old = self.reply(step)
@@ -292,7 +313,7 @@ class Run:
 
     def base(self) -> Json | None:
         """Return the base of an edit, `articad.base/1`, or None."""
-        return self._read_json(_BASE)
+        return self._read_json(_BASE, "base")
 
     def save_base(self, base: Json) -> None:
         """Save the base of an edit, so that the run does not depend on another one."""
@@ -302,8 +323,11 @@ class Run:
 
     def plan_text(self) -> str | None:
         """Return the current plan as JSON text, or None."""
-        content = self._read(_PLAN)
-        return None if content is None else content.decode()
+        content = self._read(_PLAN, PLAN_BYTES)
+        try:
+            return None if content is None else content.decode()
+        except UnicodeDecodeError as error:
+            raise _unreadable(str(self.path / _PLAN), f"{self.path / _PLAN} is not UTF-8: {error.reason}.") from error
 
     def save_plan(self, text: str, version: int) -> None:
         """Save a version of the plan, counted from 0, and make it the current one."""
@@ -314,11 +338,11 @@ class Run:
 
     def part(self, name: str) -> Json | None:
         """Return `part.json` of a finished part, or None."""
-        return self._read_json(f"{_PARTS}/{name}/{_PART}")
+        return self._read_json(f"{_PARTS}/{name}/{_PART}", "part")
 
     def script(self, name: str) -> bytes | None:
         """Return the script of a part, or None."""
-        return self._read(f"{_PARTS}/{name}/{_SCRIPT}")
+        return self._read(f"{_PARTS}/{name}/{_SCRIPT}", SCRIPT_BYTES)
 
     def part_names(self) -> tuple[str, ...]:
         """Return the names of the finished parts."""
@@ -372,7 +396,7 @@ class Run:
 
     def attempt(self, name: str, number: int) -> Json | None:
         """Return the outcome of an attempt at a part, or None."""
-        return self._read_json(f"{_ATTEMPTS}/{name}-{number}/{_OUTCOME}")
+        return self._read_json(f"{_ATTEMPTS}/{name}-{number}/{_OUTCOME}", "attempt")
 
     def attempt_picture(self, name: str, number: int) -> bytes | None:
         """Return the picture of an attempt's result, or None."""
@@ -389,7 +413,7 @@ class Run:
 
     def assembly(self) -> Json | None:
         """Return the assembly's report, or None."""
-        return self._read_json(_ASSEMBLY)
+        return self._read_json(_ASSEMBLY, "assembly")
 
     def save_assembly(self, report: Json) -> None:
         """Save the assembly's report."""
@@ -397,7 +421,7 @@ class Run:
 
     def checks(self) -> Json | None:
         """Return the report `articad.checks/1`, or None."""
-        return self._read_json(_CHECKS)
+        return self._read_json(_CHECKS, "checks")
 
     def save_checks(self, report: Json) -> None:
         """Save the report `articad.checks/1`."""
@@ -405,7 +429,7 @@ class Run:
 
     def verdict(self) -> Json | None:
         """Return the report `articad.verdict/1` of the last round, or None."""
-        return self._read_json(_VERDICT)
+        return self._read_json(_VERDICT, "verdict")
 
     def save_verdict(self, report: Json) -> None:
         """Save the report `articad.verdict/1`."""
@@ -421,7 +445,7 @@ class Run:
 
     def edit(self) -> Json | None:
         """Return the report of an edit on what has changed, `articad.edit/1`, or None."""
-        return self._read_json(_EDIT)
+        return self._read_json(_EDIT, "edit")
 
     def save_edit(self, report: Json) -> None:
         """Save the report of an edit on what has changed."""
@@ -429,7 +453,7 @@ class Run:
 
     def review(self) -> Json | None:
         """Return the report `articad.review/1`, or None."""
-        return self._read_json(_REVIEW)
+        return self._read_json(_REVIEW, "review")
 
     def save_review(self, report: Json) -> None:
         """Save the report `articad.review/1`."""
@@ -437,7 +461,7 @@ class Run:
 
     def certificate(self) -> Json | None:
         """Return the report `articad.certificate/2`, or None."""
-        return self._read_json(_CERTIFICATE)
+        return self._read_json(_CERTIFICATE, "certificate")
 
     def save_certificate(self, report: Json, meshes: Mapping[str, bytes]) -> Path:
         """Save a certificate with its meshes, which a checker needs; return its file."""
@@ -459,9 +483,8 @@ class Run:
         """Return the report of each export by its format, with the `folder` and the path of the `main` file."""
         reports = {}
         for file in sorted((self.path / _EXPORT).glob("*/losses.json")):
-            report = self._read_json(str(file.relative_to(self.path))) or {}
-            files = report.get("files")
-            main = next(iter(files), "") if isinstance(files, dict) else ""
+            report = self._read_json(str(file.relative_to(self.path)), "losses") or {}
+            main = next(iter(report.get("files", {})), "")
             if Path(main).is_absolute() or ".." in Path(main).parts:
                 raise _unreadable(str(file), f"{file} names a file outside its folder: {main[:100]!r}.")
             reports[file.parent.name] = report | {"folder": str(file.parent), "main": str(file.parent / main)}
@@ -501,9 +524,9 @@ class Run:
 
     def events(self) -> Iterator[Json]:
         """Yield the trace's events; a line that a killed process left incomplete is skipped."""
-        for line in (self._read(_TRACE) or b"").decode(errors="replace").splitlines():
+        for line in itertools.islice(io.BytesIO(self._read(_TRACE) or b""), _LINES):
             with contextlib.suppress(ValueError, RecursionError):
-                event = json.loads(line)
+                event = json.loads(line.decode(errors="replace")) if len(line) <= _LINE_BYTES else None
                 if isinstance(event, dict):
                     yield event
 
@@ -515,9 +538,9 @@ class Run:
 
     # ------------------------------------------------------------------ reading and writing
 
-    def _read(self, name: str) -> bytes | None:
+    def _read(self, name: str, most: int = RECORD_BYTES) -> bytes | None:
         try:
-            return read_file(self.path / name, RECORD_BYTES, root=self.path)
+            return read_file(self.path / name, most, root=self.path)
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
@@ -527,16 +550,23 @@ class Run:
         content = self._read(file.relative_to(self.path).as_posix())
         return hashlib.sha256(content or b"").hexdigest()
 
-    def _read_json(self, name: str) -> Json | None:
-        content = self._read(name)
+    def _read_json(self, name: str, form: str | None = None) -> Json | None:
+        """Return a record, or None if there is none; `form` is its name in `FORMS`."""
+        content = self._read(name, _JSON_BYTES)
         if content is None:
             return None
+        place = self.path / name
+        self._weights[name] = sum(map(content.count, _COUNTED))
+        if sum(self._weights.values()) > _JSON_VALUES:
+            raise _unreadable(str(place), f"{place} and the records that were read before have more than {_JSON_VALUES} values.")
         try:
             value = json.loads(content, parse_constant=_no_number)
         except (ValueError, RecursionError) as error:
-            raise _unreadable(str(self.path / name), f"{self.path / name} is not JSON: {error}.") from error
+            raise _unreadable(str(place), f"{place} is not JSON: {error}.") from error
         if not isinstance(value, dict):
-            raise _unreadable(str(self.path / name), f"{self.path / name} is not a JSON object.")
+            raise _unreadable(str(place), f"{place} is not a JSON object.")
+        if form is not None and (wrong := misfit_of(value, form)):
+            raise _unreadable(str(place), f"{place} is no record of articad: {wrong} is missing or is something else.")
         return value
 
     def _write_json(self, name: str, value: Json) -> None:
@@ -731,20 +761,25 @@ def _read_request(path: Path) -> RunRequest:
         if (path / _PLAN).is_file() and stored is None:
             hint = f"It is a plan: build it first, by `articad build {path} --out RUN`, and name that run."
         raise RunError.at(path, f"{path} is not a run: it has no {REQUEST_FILE} of the form {REQUEST_SCHEMA}.", hint)
-    try:
-        prompt, options, named = stored["prompt"], stored["options"], [(image["file"], image.get("part")) for image in stored["images"]]
-        whole = isinstance(prompt, str) and isinstance(options, dict) and all(isinstance(name, str) for name, _ in named)
-    except (KeyError, TypeError, AttributeError):
-        whole = False
-    if not whole:
-        raise RunError.at(path, f"{path / REQUEST_FILE} is incomplete.", "Name another run directory.")
-    for name, _ in named:  # an untrusted run may name any file, and its pictures are sent to a model
-        if not _IMAGE_FILE.fullmatch(name):
-            raise RunError.at(
-                path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, which is not in the run.", "Do not use this run."
-            )
-    images = tuple(UserImage.read(path / name, None if part is None else str(part), path) for name, part in named)
-    return RunRequest(prompt=prompt, images=images, options=options)
+    if wrong := misfit_of(stored, "request"):
+        raise RunError.at(
+            path, f"{path / REQUEST_FILE} is incomplete: {wrong} is missing or is something else.", "Name another run directory."
+        )
+    named = [(image["file"], image.get("part")) for image in stored["images"]]
+    for name, count in Counter(
+        name for name, _ in named
+    ).items():  # an untrusted run may name any file, and its pictures are sent to a model
+        if not _IMAGE_FILE.fullmatch(name) or count > 1:
+            why = "which is not in the run" if count == 1 else f"{count} times"
+            raise RunError.at(path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, {why}.", "Do not use this run.")
+    left = _IMAGES_LIMIT
+    images = []
+    for name, part in named:
+        images.append(UserImage.read(path / name, part, path))
+        left -= len(images[-1].content)
+        if left < 0:
+            break  # the request refuses them
+    return RunRequest(prompt=stored["prompt"], images=tuple(images), options=stored["options"])
 
 
 def _locked(path: Path) -> int:

@@ -109,14 +109,27 @@ def _needed(options: argparse.Namespace, *, data: bool = False) -> str:
     if not options.what or (data and not options.data):
         what = "the folder of what is to be scored" + (", and --data" if data else "")
         raise ReadError(f"`articad bench {options.action}` needs {what}.", path="bench")
-    return str(options.what)
+    return _folder(options.what)
+
+
+def _folder(named: str) -> str:
+    """Return a folder that is to be read.
+
+    Raises:
+        ReadError: If there is none.
+    """
+    from articad.errors import ReadError
+
+    if not Path(named).is_dir():
+        raise ReadError.at(named, f"There is no folder {named}.", "Correct the name.", said=f"There is no folder {named}.")
+    return named
 
 
 def _table(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad_bench.row import rows_in
     from articad_bench.table import table
 
-    return print_table(table(rows_in(options.what or options.out, options.names)), terminal)
+    return print_table(table(rows_in(_folder(options.what or options.out), options.names)), terminal)
 
 
 def _score(options: argparse.Namespace, terminal: Terminal) -> Report:
