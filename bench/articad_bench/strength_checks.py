@@ -57,7 +57,7 @@ class Carries(Check):
     part, without this board carry it where they touch it: what only touches it from below pushes, what is fixed to it holds both ways, and
     does not let it turn where it reaches along twice the thickness of the board, or along half of the board, and a pin lets it turn about its axis.
     Both directions of the board are looked at, and the worse one counts; what lies all round a board carries the middle third of it in the better
-    direction. The load lies evenly on the whole surface, or on any one place of it.
+    direction. What carries the board is taken for rigid, however thin it is. The load lies evenly on the whole surface, or on any one place of it.
 
     Attributes:
         kg: Load on each board.

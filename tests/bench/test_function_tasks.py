@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+import re
+from typing import Any, Final
 
 import pytest
 
@@ -10,6 +11,7 @@ from articad_bench.function_checks import Folds
 from articad_bench.reference import reference
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, tasks_in
+from tests.bench.test_invariance import names_no_level_direction
 
 IN_CI = ("stack_shaft_two_bearings", "brief_wall_shelf_files")
 
@@ -80,6 +82,19 @@ def test_what_is_folded_all_the_time_is_not_open() -> None:
             if isinstance(check, Folds) and any(check.opens):
                 opened = sorted(side or 0.0 for side in check.opens)
                 assert any(side > folded for side, folded in zip(opened, sorted(check.into), strict=True)), task.name
+
+
+DIRECTION: Final = re.compile(r"(?<!\d )(?<![\w.])[-+]?[xy]\b(?! \d)", re.IGNORECASE)
+"""The name of an axis, which "900 x 450 mm" is not."""
+
+
+@pytest.mark.parametrize(
+    "name", [task.name for _, task in tasks_in(TASKS) if task.kind == "separating" and not task.images and not task.given]
+)
+def test_a_text_whose_checks_tell_x_from_y_names_one_of_them(name: str) -> None:
+    ((_, task),) = tasks_in(TASKS, names=[name])
+
+    assert names_no_level_direction(task) or DIRECTION.search(task.prompt)
 
 
 @pytest.mark.slow

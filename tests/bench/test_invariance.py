@@ -121,7 +121,12 @@ def names_no_level_direction(task: Task) -> bool:
     """Return whether no check of a task tells x from y."""
     rows = [check.model_dump() for check in task.checks]
     for row in rows:
-        vectors = [row.get("axis"), *(row[name].get("axis") for name in ("joint", "driver", "follower") if isinstance(row.get(name), dict))]
+        vectors = [
+            row.get("axis"),
+            row.get("along"),
+            row.get("toward"),
+            *(row[name].get("axis") for name in ("joint", "driver", "follower") if isinstance(row.get(name), dict)),
+        ]
         if any(axis in ("x", "y") or (isinstance(axis, tuple) and (axis[0] or axis[1])) for axis in vectors if axis is not None):
             return False
         if row["kind"] == "size" and row["mm"][0] != row["mm"][1]:
