@@ -26,6 +26,7 @@ Value = tuple[Unit, float, float]
 
 CLOSE: Final = 0.13  # of a number, by which the bounds of a check may lie about it on either side
 EXACT: Final = 0.0051  # of a number: ratios are told in three figures
+TURN: Final = 360.0
 STANDS: Final = 5.0  # degrees of lean at which all that stands must stand
 _UNITS: Final[dict[str, tuple[Unit, float]]] = {
     "mm": ("mm", 1.0),
@@ -451,6 +452,8 @@ def _worded(check: AnyCheck, stated: Sequence[Number]) -> str | None:
         return "all tasks: it stands freely"
     if check.kind in {"ratio", "turns"} and abs(row.ratio) == 1:
         return "words: what turns alike"
+    if check.kind == "travel" and row.joint.span == "endless" and row.by[0] <= TURN <= row.by[1]:
+        return "words: what goes round without end"
     if check.kind == "gap" and row.mm[0] <= 0 <= row.mm[1]:
         return "words: what touches"
     measured = [value for value in _values(check) if value[0] not in {"count", "%"}]

@@ -81,6 +81,9 @@ def test_a_check_whose_number_no_text_states_is_found() -> None:
     )
     assert stated("A box.", {"kind": "stands", "degrees": 20}) is None
     assert stated("A box.", {"kind": "stands"}) == "all tasks: it stands freely"
+    round_and_round = {"kind": "travel", "joint": {"type": "revolute", "span": "endless"}, "by": [355, 365]}
+    assert stated("It goes round without end.", round_and_round) == "words: what goes round without end"
+    assert stated("It goes round without end.", round_and_round | {"by": [170, 190]}) is None
 
 
 def test_the_numbers_of_an_edit_are_held_by_the_checks_of_the_edited_product() -> None:
