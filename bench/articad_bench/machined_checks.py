@@ -22,6 +22,7 @@ PLACE_MM: Final = 0.25  # by which a round may lie beside its place
 SIZE_MM: Final = 0.12  # by which diameters and lengths may differ
 SIZE_SHARE: Final = 0.004  # of a diameter or length, by which it may differ in addition
 VOLUME: Final = 0.02  # of a part's volume
+SPREAD: Final = 0.015  # of the radii of gyration of a part
 CENTRE: Final = 0.01  # of the diagonal of a part's rounds, by which its centre of mass may lie beside its place
 LEAN: Final = 0.9998  # cosine of the angle by which an axis may lean
 MEASURED_MM: Final = 0.002  # by which a diameter that is measured on a mesh may be off
@@ -34,10 +35,11 @@ RoundRow = tuple[float, float, bool, bool, float, float, float, float, float, fl
 class Machined(Check):
     """A number of parts have this volume and exactly these round holes and shoulders, each in its place: not one more, one less, or a mirror image.
 
-    The frame of a part does not matter: the places are compared after the rigid motion that brings them together best.
+    How a part's matter is spread about its middle tells a block from another one of the same volume. The frame of a part does not matter: the places are compared after the rigid motion that brings them together best.
 
     Attributes:
         cm3: Volume.
+        spread: Radii of gyration about its principal axes, ascending [mm]; None where any are accepted.
         rounds: Of each cylinder its diameter and length, whether it is a hole, whether the hole is blind, its middle from the part's
             centre of mass, and the direction of its axis.
         number: Of such parts.
@@ -45,6 +47,7 @@ class Machined(Check):
 
     kind: Literal["machined"] = "machined"
     cm3: float
+    spread: tuple[float, float, float] | None = None
     rounds: tuple[RoundRow, ...]
     number: Bounds = (1, 1)
 
@@ -53,7 +56,8 @@ class Machined(Check):
         holes = ", ".join(f"{row[0]:g} x {row[1]:g}{' blind' if row[3] else ''}" for row in self.rounds if row[2])
         outer = ", ".join(f"{row[0]:g} x {row[1]:g}" for row in self.rounds if not row[2])
         told = "; ".join(each for each in (f"holes {holes}" if holes else "", f"shoulders {outer}" if outer else "") if each)
-        return f"{in_words(self.number)} parts of {self.cm3:.4g} cm³ with {told or 'no round hole or shoulder'}, in their places"
+        spread = "" if self.spread is None else f", radii of gyration {', '.join(f'{mm:.4g}' for mm in self.spread)} mm,"
+        return f"{in_words(self.number)} parts of {self.cm3:.4g} cm³{spread} with {told or 'no round hole or shoulder'}, in their places"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         told, count = [], 0
@@ -68,6 +72,8 @@ class Machined(Check):
         volume, centre, _ = mesh.solid_integrals()
         if abs(volume / 1000 - self.cm3) > VOLUME * self.cm3:
             return f"{volume / 1000:.4g} cm³"
+        if self.spread is not None and (np.abs(_gyration(mesh) - self.spread) > SPREAD * np.array(self.spread)).any():
+            return f"radii of gyration {', '.join(f'{mm:.4g}' for mm in _gyration(mesh))} mm"
         found = [_Cylinder.of(each, np.asarray(centre)) for each in rounds(mesh)]
         wanted = [_Cylinder.stored(row) for row in self.rounds]
         missing = _unmatched(wanted, found)
@@ -89,8 +95,15 @@ def machined(subject: Subject) -> list[Machined]:
             continue
         volume, centre, _ = mesh.solid_integrals()
         cylinders = [_Cylinder.of(each, np.asarray(centre)) for each in rounds(mesh)]
-        checks.append(Machined(cm3=float(f"{abs(volume) / 1000:.5g}"), rounds=tuple(each.row for each in cylinders)))
+        a, b, c = (float(f"{mm:.5g}") for mm in _gyration(mesh))
+        checks.append(Machined(cm3=float(f"{abs(volume) / 1000:.5g}"), spread=(a, b, c), rounds=tuple(each.row for each in cylinders)))
     return checks
+
+
+def _gyration(mesh: TriMesh) -> FloatArray:
+    """Return the radii of gyration of a solid about its principal axes, ascending `(3,)` [mm]."""
+    volume, _, inertia = mesh.solid_integrals()
+    return np.asarray(np.sqrt(np.abs(np.linalg.eigvalsh(inertia) / volume)))
 
 
 @dataclass(frozen=True, eq=False)

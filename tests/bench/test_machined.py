@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import numpy as np
@@ -76,6 +77,17 @@ def test_equal_parts_are_counted_and_parts_without_holes_told_by_volume() -> Non
 
     assert [(check.cm3, check.number) for check in machined(subject)] == [(1.0, (2.0, 2.0)), (1.2, (1.0, 1.0))]
     assert all(check.judge(subject).ok for check in machined(subject))
+
+
+def test_a_block_of_the_same_volume_is_another_part() -> None:
+    """Sides of 10, 10 and 12 mm, and of 9, 10 and 13.33 mm: radii of gyration of 4.08 to 4.51 mm, and of 3.88 to 4.81 mm."""
+    (check,) = machined(one(box(10, 10, 12)))
+
+    assert check.spread == pytest.approx((math.sqrt(200 / 12), math.sqrt(244 / 12), math.sqrt(244 / 12)), rel=1e-4)
+    assert check.judge(one(box(10.05, 10, 11.95).transformed(TURN))).ok
+    judged = check.judge(one(box(9, 10, 12 * 10 / 9)))
+    assert not judged.ok
+    assert "radii of gyration" in judged.measured
 
 
 def test_a_turned_part_is_told_by_its_shoulders_and_by_their_order() -> None:
