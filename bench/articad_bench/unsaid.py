@@ -9,14 +9,15 @@ from collections.abc import Collection
 from typing import Final, Literal, NamedTuple
 
 from articad.kinematics.joints import JointType
-from articad_bench.checks import Joints, Loops
+from articad_bench.checks import Joints, Loops, Mass
 from articad_bench.function_checks import PutTogether
 from articad_bench.stack_checks import Stack
 from articad_bench.task import Task
 
-Asked = Literal["motion", "loop", "cone", "force", "fit"]
+Format = Literal["urdf", "mjcf", "step", "freecad"]
+Asked = Literal["motion", "loop", "cone", "force", "fit", "weight"]
 """What a product has: joints that move, a closed loop, a ball whose cone is limited and whose twist has a range of its own, parts that are pressed
-or snapped together, declared fits."""
+or snapped together, declared fits, a mass that is asked for."""
 
 _MOTION: Final = frozenset(
     {
@@ -37,9 +38,9 @@ _MOTION: Final = frozenset(
         "reaches",
     }
 ) | {"made", "captive", "clear_in_motion", "certified", "simulates"}
+_OF_A_CONE: Final = frozenset({"joints", "travel", "clear_in_motion", "certified"})
 
-
-_EVERY: Final[tuple[Literal["urdf", "mjcf", "step"], ...]] = ("urdf", "mjcf", "step")
+_EVERY: Final[tuple[tuple[Format, str], ...]] = (("urdf", "URDF"), ("mjcf", "MJCF"), ("step", "STEP"), ("freecad", "FreeCAD"))
 
 
 class Unsaid(NamedTuple):
@@ -52,7 +53,7 @@ class Unsaid(NamedTuple):
         why: The reason, a sentence.
     """
 
-    format: Literal["urdf", "mjcf", "step"]
+    format: Format
     asked: Asked
     kinds: frozenset[str]
     why: str
@@ -63,21 +64,24 @@ UNSAID: Final = (
     Unsaid(
         "mjcf",
         "cone",
-        frozenset({"joints", "travel", "clear_in_motion", "certified"}),
+        _OF_A_CONE,
         "MJCF limits the total angle of a ball, not cone and twist.",
     ),
     *(
         rule
-        for form in _EVERY
+        for form, called in _EVERY
         for rule in (
-            Unsaid(form, "force", frozenset({"put_together"}), f"{form.upper()} does not say what is pressed or snapped together."),
-            Unsaid(form, "fit", frozenset({"stack"}), f"{form.upper()} holds no fits."),
+            Unsaid(form, "force", frozenset({"put_together"}), f"{called} does not say what is pressed or snapped together."),
+            Unsaid(form, "fit", frozenset({"stack"}), f"{called} holds no fits."),
         )
     ),
-    Unsaid("step", "motion", _MOTION | {"lead", "threads"}, "STEP holds no joints."),
+    Unsaid("freecad", "cone", _OF_A_CONE, "FreeCAD limits no angle of a ball."),
+    Unsaid("freecad", "weight", frozenset({"mass"}), "FreeCAD holds no densities but those of its own library."),
+    Unsaid("step", "motion", _MOTION | {"lead", "threads", "joined"}, "STEP holds no joints."),
+    Unsaid("step", "weight", frozenset({"mass"}), "STEP holds no densities."),
 )
 
-_FORMATS: Final = {".urdf": "urdf", ".xml": "mjcf", ".mjcf": "mjcf", ".step": "step", ".stp": "step"}
+_FORMATS: Final = {".urdf": "urdf", ".xml": "mjcf", ".mjcf": "mjcf", ".step": "step", ".stp": "step", ".fcstd": "freecad"}
 
 
 def format_of(suffix: str) -> str:
@@ -95,6 +99,8 @@ def asked_for(task: Task) -> set[Asked]:
             found.add("cone")
         if isinstance(check, PutTogether) and check.force:
             found.add("force")
+        if isinstance(check, Mass):
+            found.add("weight")
         if isinstance(check, Stack) and check.plays:
             found.add("fit")
     return found

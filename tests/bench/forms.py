@@ -2,22 +2,40 @@
 
 from __future__ import annotations
 
+import re
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final, Literal
+from typing import Any, Final
 
 from articad.assembly import Assembly
+from articad.export.freecad import write_freecad_alone
 from articad.export.mjcf import write_mjcf
+from articad.export.step import write_step
 from articad.export.urdf import write_urdf
+from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
+from articad.importers.step import read_step
 from articad.importers.urdf import read_urdf
 from articad_bench.cheat_run import COSTLY
 from articad_bench.subject import Subject
 from articad_bench.task import Task
-from articad_bench.unsaid import Asked, asked_for, unsaid
+from articad_bench.unsaid import Asked, Format, asked_for, unsaid
 
-Form = Literal["urdf", "mjcf"]
-FORMS: Final[tuple[Form, ...]] = ("urdf", "mjcf")
+FORMS: Final[tuple[Format, ...]] = ("urdf", "mjcf", "freecad", "step")
+_WRITTEN: Final[dict[Format, tuple[Callable[..., Any], dict[str, Any]]]] = {
+    "urdf": (write_urdf, {"collision": "solid"}),
+    "mjcf": (write_mjcf, {"collision": "solid", "actuators": "position"}),
+    "freecad": (write_freecad_alone, {}),
+    "step": (write_step, {}),
+}
+_READ: Final[dict[Format, tuple[Callable[..., Assembly], dict[str, Any]]]] = {
+    "urdf": (read_urdf, {"metadata": False, "fuse": True}),
+    "mjcf": (read_mjcf, {"metadata": False, "fuse": True}),
+    "freecad": (read_freecad, {"metadata": False}),
+    "step": (read_step, {}),
+}
+_SUFFIXES: Final = {".urdf", ".xml", ".FCStd", ".step"}
 
 
 def refused(task: Task, subject: Subject) -> list[str]:
@@ -25,18 +43,27 @@ def refused(task: Task, subject: Subject) -> list[str]:
     return [str(judged) for check in task.checks if check.kind not in COSTLY and not (judged := check.judge(subject)).ok]
 
 
-def as_file(assembly: Assembly, form: Form, folder: Path) -> Assembly:
+def as_file(assembly: Assembly, form: Format, folder: Path) -> Assembly:
     """Return what a file of an assembly states. The assembly must rest at zero: URDF states no other pose."""
-    if form == "urdf":
-        files = write_urdf(assembly, collision="solid").write(folder)
-    else:
-        files = write_mjcf(assembly, collision="solid", actuators="position").write(folder)
-    (file,) = (path for path in files if path.suffix in {".urdf", ".xml"})
-    read: Callable[..., Assembly] = {"urdf": read_urdf, "mjcf": read_mjcf}[form]
-    return read(file, metadata=False, fuse=True)
+    (write, options), (read, more) = _WRITTEN[form], _READ[form]
+    (file,) = (path for path in write(assembly, **options).write(folder) if path.suffix in _SUFFIXES)
+    if form == "freecad":
+        _switch_on(file)
+    return read(file, **more)
 
 
-def sayable(task: Task, assembly: Assembly, form: Form) -> Task:
+def _switch_on(file: Path) -> None:
+    """Switch the gears, racks and screws of a FreeCAD document on: articad writes them switched off, for FreeCAD solves them otherwise."""
+    with zipfile.ZipFile(file) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    switch = rb'(name="Activated"[^>]*>\s*<Bool value=")false'
+    members["Document.xml"] = re.sub(switch, rb"\g<1>true", members["Document.xml"])
+    with zipfile.ZipFile(file, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+
+
+def sayable(task: Task, assembly: Assembly, form: Format) -> Task:
     """Return a task without the checks that no file of a form can meet, by the rules of `articad_bench.unsaid` alone."""
     loops: set[Asked] = {"loop"} if assembly.mechanism.loop_joints else set()
     left_out = unsaid(form, asked_for(task) | loops)

@@ -21,7 +21,8 @@ from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad_bench.reference import reference
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, Task, tasks_in
-from tests.bench.forms import FORMS, Form, as_file, refused, sayable
+from articad_bench.unsaid import Format
+from tests.bench.forms import FORMS, as_file, refused, sayable
 from tests.bench.wrong import changed, shaped_as
 
 ALL = {task.name: (folder, task) for folder, task in tasks_in(TASKS) if task.given is None}
@@ -159,7 +160,9 @@ def test_a_reference_passes_turned_where_no_level_direction_is_asked_for(name: s
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("form", FORMS)
-def test_a_reference_passes_as_a_file_of_another_tool_but_for_what_the_format_cannot_state(name: str, form: Form, tmp_path: Path) -> None:
+def test_a_reference_passes_as_a_file_of_another_tool_but_for_what_the_format_cannot_state(
+    name: str, form: Format, tmp_path: Path
+) -> None:
     assembly = rested(built(name))
 
     assert refused(sayable(ALL[name][1], assembly, form), Subject(as_file(assembly, form, tmp_path))) == []

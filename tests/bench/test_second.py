@@ -16,7 +16,8 @@ from articad.assembly import Assembly
 from articad_bench.reference import given, reference
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, tasks_in
-from tests.bench.forms import FORMS, Form, as_file, refused, sayable
+from articad_bench.unsaid import Format
+from tests.bench.forms import FORMS, as_file, refused, sayable
 from tests.bench.test_invariance import rested
 
 SECOND: Final = Path(__file__).with_name("second")
@@ -57,7 +58,7 @@ def test_it_is_another_construction(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", NAMES)
-def test_it_passes_as_a_file_of_another_tool(name: str, form: Form, tmp_path: Path) -> None:
+def test_it_passes_as_a_file_of_another_tool(name: str, form: Format, tmp_path: Path) -> None:
     assembly = rested(second(name))
 
     assert refused(sayable(ALL[name][1], assembly, form), Subject(as_file(assembly, form, tmp_path))) == []
