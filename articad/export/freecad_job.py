@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from articad.aliases import Json
+from articad.arrays import FloatArray
 from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
 from articad.errors import PlanError
@@ -411,7 +412,7 @@ class Job:
                     | {"type": "Screw", "object": self.names.claim(f"{joint.name}__thread"), "label": f"{joint.name} thread"}
                     | {
                         "limits": {},
-                        "distances": {"Distance": abs(joint.lead)},
+                        "distances": {"Distance": joint.lead},
                         "active": False,
                     }
                 )
@@ -469,7 +470,7 @@ class Job:
         return found
 
     def _couplings(self) -> Iterator[Json]:
-        joints = {joint.name: joint for joint in self.assembly.joints}
+        joints, poses = {joint.name: joint for joint in self.assembly.joints}, self.assembly.at()
         for coupling in self.assembly.mechanism.couplings:
             where, kind = f"couplings.{coupling.name}", _COUPLINGS.get(coupling.kind)
             if kind is None:
@@ -490,7 +491,7 @@ class Job:
                 "offset_1": _seven(_flip(a)),
                 "offset_2": _seven(_flip(b)),
                 "limits": {},
-                "distances": _distances(coupling),
+                "distances": _distances(coupling, *(_axis(joint, poses) for joint in (a, b))),
                 "expressions": {},
             }
 
@@ -511,12 +512,24 @@ def _mass(part: Part) -> Json | None:
     return {"kg": float(part.mass.mass), "density": float(part.mass.mass) / volume if volume > 0 else None}
 
 
-def _distances(coupling: Coupling) -> dict[str, float]:
-    """Return the radii, pitch radius or lead of a coupling: for a gear and a belt only their ratio is known."""
+def _axis(joint: Joint, poses: Mapping[str, SE3]) -> FloatArray:
+    """Return the direction along and about which the child of a joint moves, in the assembly at rest."""
+    axis: FloatArray = (poses[joint.parent] @ joint.T_parent_connector).rotation[:, 2]
+    return axis
+
+
+def _distances(coupling: Coupling, a: FloatArray, b: FloatArray) -> dict[str, float]:
+    """Return the radii, pitch radius or lead of a coupling: for a gear and a belt only their ratio is known; a left-handed lead is negative.
+
+    Args:
+        coupling: The coupling.
+        a: Direction of the first joint's axis `(3,)`.
+        b: Of the second's.
+    """
     ratio = abs(coupling.ratio)
     if coupling.kind in ("gear", "belt"):
         return {"Distance": 10.0 * ratio, "Distance2": 10.0}
-    return {"Distance": ratio if coupling.kind == "rack" else 2 * math.pi * ratio}
+    return {"Distance": ratio if coupling.kind == "rack" else math.tau * coupling.ratio * math.copysign(1.0, float(a @ b))}
 
 
 def _flip(joint: Joint) -> SE3:

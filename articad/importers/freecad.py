@@ -29,7 +29,7 @@ from articad.findings import Finding, Findings
 from articad.geometry.mass import MassProperties
 from articad.geometry.part import DEFAULT_COLOR, Part, Shape, Solid
 from articad.importers.freecad_constraints import CONSTRAINTS, Constraint, merged, planar_faces
-from articad.importers.freecad_couplings import COUPLINGS, PartMotions, Stated, coupling_of
+from articad.importers.freecad_couplings import COUPLINGS, PartMotions, Stated, coupling_of, threaded
 from articad.importers.freecad_document import IDENTITY, FreeCADObject, LinkedDocuments
 from articad.importers.freecad_edits import Edit, edits
 from articad.importers.freecad_materials import DENSITIES
@@ -572,8 +572,22 @@ class _Model:
             else:
                 raise self.refused(item, kind)
         made = self.restricted(made, restricting)
+        made, between = self.threaded(made, stated)
         motions = PartMotions(made, self.poses)
-        return made, [self.coupled(item, told, motions) for item, told in stated]
+        return made, [self.coupled(item, told, motions) for item, told in between]
+
+    def threaded(
+        self, joints: list[Joint], stated: list[tuple[FreeCADObject, Stated]]
+    ) -> tuple[list[Joint], list[tuple[FreeCADObject, Stated]]]:
+        """Return the joints, with screws where a thread runs on a cylindrical joint, and the other couplings."""
+        between = []
+        for item, told in stated:
+            made = threaded(joints, told, self.poses)
+            if made is None:
+                between.append((item, told))
+            else:
+                joints = made
+        return joints, between
 
     def coupled(self, item: FreeCADObject, told: Stated, motions: PartMotions) -> Coupling:
         """Return the coupling that a joint of FreeCAD's means, or refuse the joint by its name."""

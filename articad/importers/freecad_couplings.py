@@ -8,14 +8,14 @@ moves with the rim of its pinion.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
-from articad.kinematics.joints import Coupling, Joint, JointType
+from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 
 COUPLINGS = {"Gears": "gear", "Belt": "belt", "RackPinion": "rack", "Screw": "screw"}
 _PARALLEL = 1e-6  # sine of the angle up to which two axes are parallel
@@ -96,7 +96,7 @@ class PartMotions:
         for joint in self._joints.get(part, ()):
             at = self._poses[joint.parent] @ joint.T_parent_connector
             sense = 1.0 if joint.child == part else -1.0
-            if joint.type in (JointType.REVOLUTE, JointType.SLIDER, JointType.CYLINDRICAL):
+            if joint.type in (JointType.REVOLUTE, JointType.SLIDER, JointType.CYLINDRICAL, JointType.SCREW):
                 columns = [column for column in joint.columns if (column.unit == "rad") is turns]
                 yield from (_PartMotion(column.name, turns, sense * at.rotation[:, 2], at.translation) for column in columns)
 
@@ -110,6 +110,53 @@ def _on_line(directions: FloatArray, points: FloatArray, z: FloatArray, point: F
     return on
 
 
+def threaded(joints: Sequence[Joint], stated: Stated, poses: Mapping[str, SE3]) -> list[Joint] | None:
+    """Return the joints with a screw in place of the cylindrical joint that a thread runs on; None if there is no such joint.
+
+    The thread must be between the two parts of the joint, about its axis.
+    """
+    places = [
+        place
+        for place, joint in enumerate(joints)
+        if joint.type is JointType.CYLINDRICAL and {joint.parent, joint.child} == set(stated.parts) and _runs_on(joint, stated, poses)
+    ]
+    if stated.kind != "Screw" or len(places) != 1 or _size_of(stated) is not None:
+        return None
+    made = list(joints)
+    made[places[0]] = _screw(joints[places[0]], stated.distance)
+    return made
+
+
+def _runs_on(joint: Joint, stated: Stated, poses: Mapping[str, SE3]) -> bool:
+    """Return whether the z axes of a thread's frames are the axis of a joint."""
+    at = poses[joint.parent] @ joint.T_parent_connector
+    directions = np.array([frame.rotation[:, 2] for frame in stated.frames])
+    points = np.array([frame.translation for frame in stated.frames])
+    return bool(_on_line(directions, points, at.rotation[:, 2], at.translation).all())
+
+
+def _screw(joint: Joint, lead: float) -> Joint:
+    """Return the screw of a cylindrical joint, at rest where it is: Tz(d) Rz(θ) with d - d_0 = k (θ - θ_0), k = lead / 2π.
+
+    Poses give θ_0 but for whole turns: of those that the limits allow, it has as many as bring k θ_0 nearest to d_0. Both limits hold: those
+    of the slide bound the angle by θ = θ_0 + (d - d_0) / k.
+    """
+    k = lead / math.tau
+    (slide, angle), lower, upper = joint.rest, joint.limits.lower, joint.limits.upper
+    wound = angle + math.tau * round((slide / k - angle) / math.tau)
+    angle = wound if lower[1] <= wound <= upper[1] else angle
+    by_slide = sorted(angle + (held[0] - slide) / k for held in (lower, upper))
+    low, high = max(lower[1], by_slide[0]), min(upper[1], by_slide[1])
+    return replace(
+        joint,
+        type=JointType.SCREW,
+        lead=lead,
+        T_parent_connector=joint.T_parent_connector @ SE3.trans(0.0, 0.0, slide - k * angle),
+        limits=JointLimits((min(low, angle),), (max(high, angle),)),
+        rest=(angle,),
+    )
+
+
 def coupling_of(stated: Stated, motions: PartMotions) -> Coupling | str:
     """Return the coupling, or the reason why there is none: the end of a sentence whose subject is the joint.
 
@@ -117,8 +164,8 @@ def coupling_of(stated: Stated, motions: PartMotions) -> Coupling | str:
         stated: The data in FreeCAD.
         motions: Of the parts by the other joints.
     """
-    if not stated.distance > 0 or (stated.kind in ("Gears", "Belt") and not stated.distance_2 > 0):
-        return "has a radius or a lead that is not positive"
+    if wrong := _size_of(stated):
+        return wrong
     sides = list(zip(stated.parts, stated.frames, strict=True))
     turns = [motions.axis(part, frame, turns=True) for part, frame in sides]
     if stated.kind in ("Gears", "Belt"):
@@ -129,6 +176,14 @@ def coupling_of(stated: Stated, motions: PartMotions) -> Coupling | str:
         if turn is not None and slide is not None and turn.column.partition(".")[0] != slide.column.partition(".")[0]:
             return _thread(stated, turn, slide) if stated.kind == "Screw" else _rack(stated, turn, slide, stated.frames[1 - one])
     return "needs one part that turns and one that slides, each by a joint of its own"
+
+
+def _size_of(stated: Stated) -> str | None:
+    """Return what is wrong with the radii or the lead of a joint, if anything is: a left-handed lead is negative."""
+    if stated.kind == "Screw":
+        return None if math.isfinite(stated.distance) and stated.distance != 0 else "has a lead that is zero or no number"
+    radii = (stated.distance, stated.distance_2) if stated.kind in ("Gears", "Belt") else (stated.distance,)
+    return None if all(radius > 0 for radius in radii) else "has a radius that is not positive"
 
 
 def _wheels(stated: Stated, a: _PartMotion | None, b: _PartMotion | None) -> Coupling | str:
@@ -142,8 +197,8 @@ def _wheels(stated: Stated, a: _PartMotion | None, b: _PartMotion | None) -> Cou
 
 
 def _thread(stated: Stated, turn: _PartMotion, slide: _PartMotion) -> Coupling:
-    """A right-handed thread: s = lead · θ / 2π along the axis about which it turns."""
-    return _made(stated, turn, slide, math.copysign(stated.distance / math.tau, float(np.dot(turn.direction, slide.direction))))
+    """A thread, right-handed if its lead is positive: s = lead · θ / 2π along the axis about which it turns."""
+    return _made(stated, turn, slide, stated.distance / math.tau * math.copysign(1.0, float(np.dot(turn.direction, slide.direction))))
 
 
 def _rack(stated: Stated, turn: _PartMotion, slide: _PartMotion, rack: SE3) -> Coupling | str:

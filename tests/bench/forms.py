@@ -48,16 +48,20 @@ def as_file(assembly: Assembly, form: Format, folder: Path) -> Assembly:
     (write, options), (read, more) = _WRITTEN[form], _READ[form]
     (file,) = (path for path in write(assembly, **options).write(folder) if path.suffix in _SUFFIXES)
     if form == "freecad":
-        _switch_on(file)
+        switch_on(file)
     return read(file, **more)
 
 
-def _switch_on(file: Path) -> None:
+def switch_on(file: Path) -> None:
     """Switch the gears, racks and screws of a FreeCAD document on: articad writes them switched off, for FreeCAD solves them otherwise."""
+    rewrite(file, rb'(name="Activated"[^>]*>\s*<Bool value=")false', rb"\g<1>true")
+
+
+def rewrite(file: Path, pattern: bytes, by: bytes) -> None:
+    """Replace what a FreeCAD document says, wherever a pattern is found in it."""
     with zipfile.ZipFile(file) as archive:
         members = {name: archive.read(name) for name in archive.namelist()}
-    switch = rb'(name="Activated"[^>]*>\s*<Bool value=")false'
-    members["Document.xml"] = re.sub(switch, rb"\g<1>true", members["Document.xml"])
+    members["Document.xml"] = re.sub(pattern, by, members["Document.xml"])
     with zipfile.ZipFile(file, "w") as archive:
         for name, content in members.items():
             archive.writestr(name, content)

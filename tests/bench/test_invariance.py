@@ -160,9 +160,7 @@ def test_a_reference_passes_turned_where_no_level_direction_is_asked_for(name: s
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("form", FORMS)
-def test_a_reference_passes_as_a_file_of_another_tool_but_for_what_the_format_cannot_state(
-    name: str, form: Format, tmp_path: Path
-) -> None:
+def test_a_reference_passes_as_a_file_of_another_tool_but_for_what_the_format_cannot_state(name: str, form: Format, tmp_path: Path) -> None:
     assembly = rested(built(name))
 
     assert refused(sayable(ALL[name][1], assembly, form), Subject(as_file(assembly, form, tmp_path))) == []
