@@ -15,11 +15,11 @@ from articad_bench.stack_checks import Stack
 from articad_bench.task import Task
 
 Format = Literal["urdf", "mjcf", "step", "freecad"]
-Asked = Literal["motion", "loop", "cone", "force", "fit", "weight"]
+Asked = Literal["motion", "loop", "cone", "force", "fit", "weight", "linear"]
 """What a product has: joints that move, a closed loop, a ball whose cone is limited and whose twist has a range of its own, parts that are pressed
-or snapped together, declared fits, a mass that is asked for."""
+or snapped together, declared fits, a mass that is asked for, joints coupled by other means than gears, belts, racks and screws."""
 
-_MOTION: Final = frozenset(
+MOTION: Final = frozenset(
     {
         "freedoms",
         "joints",
@@ -60,7 +60,7 @@ class Unsaid(NamedTuple):
 
 
 UNSAID: Final = (
-    Unsaid("urdf", "loop", _MOTION, "URDF holds trees of joints: the joint that closes a loop is missing."),
+    Unsaid("urdf", "loop", MOTION, "URDF holds trees of joints: the joint that closes a loop is missing."),
     Unsaid(
         "mjcf",
         "cone",
@@ -76,8 +76,9 @@ UNSAID: Final = (
         )
     ),
     Unsaid("freecad", "cone", _OF_A_CONE, "FreeCAD limits no angle of a ball."),
+    Unsaid("freecad", "linear", MOTION, "FreeCAD couples joints by gears, belts, racks and screws alone."),
     Unsaid("freecad", "weight", frozenset({"mass"}), "FreeCAD holds no densities but those of its own library."),
-    Unsaid("step", "motion", _MOTION | {"lead", "threads", "joined"}, "STEP holds no joints."),
+    Unsaid("step", "motion", MOTION | {"lead", "threads", "joined", "arranged", "carries"}, "STEP holds no joints."),
     Unsaid("step", "weight", frozenset({"mass"}), "STEP holds no densities."),
 )
 

@@ -69,6 +69,8 @@ def rewrite(file: Path, pattern: bytes, by: bytes) -> None:
 
 def sayable(task: Task, assembly: Assembly, form: Format) -> Task:
     """Return a task without the checks that no file of a form can meet, by the rules of `articad_bench.unsaid` alone."""
-    loops: set[Asked] = {"loop"} if assembly.mechanism.loop_joints else set()
-    left_out = unsaid(form, asked_for(task) | loops)
+    built: set[Asked] = {"loop"} if assembly.mechanism.loop_joints else set()
+    if any(coupling.kind == "linear" for coupling in assembly.mechanism.couplings):
+        built.add("linear")
+    left_out = unsaid(form, asked_for(task) | built)
     return task.model_copy(update={"checks": tuple(check for check in task.checks if check.kind not in left_out)})
