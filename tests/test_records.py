@@ -7,6 +7,7 @@ import traceback
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
@@ -15,9 +16,11 @@ from articad.agents.edit_base import Base
 from articad.agents.recollection import remember
 from articad.agents.review import scores, trajectory
 from articad.assembly import Assembly
+from articad.cli import main
 from articad.commands.summaries import print_run
 from articad.commands.terminal import Terminal
-from articad.errors import ArticadError, ReadError, RunError
+from articad.errors import ArticadError, PlanError, ReadError, RunError
+from articad.findings import Finding
 from articad.memory.case import Case
 from articad.memory.experience import ExperienceStore
 from articad.report.overlaps import drawn_overlaps
@@ -264,3 +267,29 @@ def test_a_plan_of_a_run_that_is_no_text_or_too_large_is_an_error_of_ours(conten
     (folder / "plan.json").write_bytes(content)
     with pytest.raises(ReadError):
         Run.view(folder).plan_text()
+
+
+LISTS = b'{"items": [' + b"[]," * 3_200_000 + b"1]}"
+
+
+@pytest.mark.parametrize(
+    ("line", "worker"),
+    [
+        ("verify-certificate FILE", "articad.certificates.verifier.json.loads"),
+        ("memory import FILE --memory store", "articad.memory.experience.ExperienceStore.import_lines"),
+        ("check FILE", "articad.plan.beyond.json.loads"),
+    ],
+)
+def test_no_command_works_on_a_text_that_has_more_values_than_any_real_one(
+    line: str, worker: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two characters are a value of up to 80 bytes: files of 15 to 90 MB took 1 to 2 GB and a minute."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plan.json").write_bytes(LISTS)
+    if line.startswith("check"):  # its form is checked all the same
+        refusal = PlanError("no plan", findings=[Finding(code="E_SCHEMA", where="a", message="m", hint="h")])
+        monkeypatch.setattr("articad.plan.schema.AssemblyPlan.load", Mock(side_effect=refusal))
+    monkeypatch.setattr(worker, Mock(side_effect=AssertionError("it works on it")))
+    assert main(line.replace("FILE", "plan.json").split()) in {1, 3}
+    said = capsys.readouterr()
+    assert "works on it" not in said.err + said.out

@@ -5,17 +5,20 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
+from articad.bounds import values_in
 from articad.commands.command import argument, command
 from articad.commands.options import amount, names
-from articad.files import RECORD_BYTES, is_file, read_file
+from articad.files import is_file, read_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
     from articad.plan.iso2768 import ToleranceClass
 
 CERTIFICATE = "certificate.json"
+_BYTES: Final = 128 << 20  # of the text of a certificate that is checked
+_VALUES: Final = 6_000_000  # in it: each takes up to 80 bytes
 
 
 @command(
@@ -83,14 +86,27 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
             else "Name a run, or the certificate.json that `articad certify RUN` wrote into it."
         )
         raise ReadError.at(str(file), message, hint, said=message)
+    if reason := _too_large(file):
+        raise ReadError.at(
+            str(file), f"{file} is not checked: {reason}.", "Prove some joints at a time: `articad certify RUN --joints A,B`."
+        )
     with terminal.progress("Checking"):
         faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
-    stated = [] if faults else _stated(json.loads(read_file(file, RECORD_BYTES)))
+    stated = [] if faults else _stated(json.loads(read_file(file, _BYTES)))
     for line in [*faults, *stated]:
         terminal.say(f"  {line}")
     verdict = "accepted" if not faults else "not checked" if faults[0].endswith(UNREAD) else "refuted"
     terminal.say(f"{file}: {verdict}.")
     return {"schema": "articad.verification/1", "ok": not faults, "file": str(file), "faults": faults, "stated": stated, "findings": []}
+
+
+def _too_large(file: Path) -> str:
+    """Return why the text of a certificate is not parsed; empty if it is."""
+    try:
+        values = values_in(read_file(file, _BYTES))
+    except OSError as error:
+        return str(error.strerror)
+    return f"it has more than {_VALUES} values" if values > _VALUES else ""
 
 
 def _stated(certificate: Report) -> list[str]:

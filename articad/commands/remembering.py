@@ -7,10 +7,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from articad.bounds import values_in
 from articad.commands.command import argument, command
 from articad.commands.options import API_BASE, EMBEDDINGS, MEMORY, positive, words
 from articad.commands.steps import experience
-from articad.files import RECORD_BYTES, read_file
+from articad.files import read_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -27,6 +28,8 @@ _WHAT: Final = {  # each action, and the argument that it needs
     "remove": "a case's id",
     "prune": "",
 }
+_BYTES: Final = 128 << 20  # of a file of cases
+_VALUES: Final = 6_000_000  # in it: each takes up to 80 bytes
 _LIKE: Final = 5  # cases of each kind that a search shows
 _WORDS: Final = 60  # characters of a request in a table
 
@@ -105,7 +108,10 @@ def _text(path: Path) -> str:
     from articad.errors import ReadError
 
     try:
-        return read_file(path, RECORD_BYTES).decode()
+        content = read_file(path, _BYTES)
+        if values_in(content) > _VALUES:
+            raise ReadError.at(path, f"{path} has more than {_VALUES} values.", "Import it in pieces: each line is a case.")
+        return content.decode()
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
         raise ReadError.at(path, f"{path} cannot be read: {reason}.", "Name a file that `articad memory export` wrote.") from None

@@ -16,6 +16,7 @@ from typing import Any, Final
 
 from pydantic import ValidationError
 
+from articad.bounds import values_in
 from articad.errors import PlanError
 from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
@@ -27,6 +28,7 @@ from articad.plan.short import expanded, functions_of
 __all__ = ["further_findings"]
 
 MOST_ROUNDS: Final = 200  # repairs: each removes at least one field or entry
+_VALUES: Final = 300_000  # of a plan whose other faults are looked for; a plan of a thousand parts has a fifth
 STAND_IN: Final = "no_name"  # replaces an invalid name
 _OWN: Final = frozenset({
     *("E_NAME", "E_DUP_NAME", "E_NONFINITE", "E_PARAMETER_BOUNDS", "E_COUNT", "E_DENSITY", "E_FRICTION", "E_AXIS_ZERO", "E_AXIS_PARALLEL"),
@@ -53,7 +55,10 @@ def further_findings(path: Path, found: Findings) -> Findings:
     """
     file = path / PLAN_FILE if path.is_dir() else path
     try:
-        document = json.loads(read_file(file, PLAN_BYTES, root=path if path.is_dir() else None))
+        text = read_file(file, PLAN_BYTES, root=path if path.is_dir() else None)
+        if values_in(text) > _VALUES:
+            return found
+        document = json.loads(text)
     except (OSError, ValueError, RecursionError):  # then only the form can be checked
         return found
     if not isinstance(document, dict) or reading.is_nested_deeper(document, reading.MOST_LEVELS):

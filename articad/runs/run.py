@@ -29,6 +29,7 @@ from pathlib import Path
 from typing import Any, Final, Literal, Self
 
 from articad.aliases import Json
+from articad.bounds import values_in
 from articad.errors import ReadError, RunError, WriteError
 from articad.files import PLAN_BYTES, RECORD_BYTES, SCRIPT_BYTES, read_file
 from articad.findings import Finding
@@ -83,8 +84,6 @@ _JSON_BYTES: Final = 64 << 20  # of one record; those of a product of 2,000 part
 _JSON_VALUES: Final = 4_000_000  # of all records that one view of a run has read: each takes up to 80 bytes
 _LINE_BYTES: Final = 1 << 20  # of one line of the trace
 _LINES: Final = 1_000_000  # of the trace
-_COUNTED: Final = (b",", b"[", b"{", b":")
-"""What begins or ends each value of JSON: at least as many as there are values."""
 _IMAGE_KINDS = {b"\x89PNG\r\n\x1a\n": ("image/png", "png"), b"\xff\xd8\xff": ("image/jpeg", "jpg"), b"GIF8": ("image/gif", "gif")}
 
 
@@ -556,7 +555,7 @@ class Run:
         if content is None:
             return None
         place = self.path / name
-        self._weights[name] = sum(map(content.count, _COUNTED))
+        self._weights[name] = values_in(content)
         if sum(self._weights.values()) > _JSON_VALUES:
             raise _unreadable(str(place), f"{place} and the records that were read before have more than {_JSON_VALUES} values.")
         try:
