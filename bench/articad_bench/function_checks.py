@@ -86,8 +86,8 @@ class Effort(Check):
     @property
     def wanted(self) -> str:
         load = f" with {self.load:g} kg on it" if self.load else ""
-        hand = " by hand at its end" if self.by_hand else ""
-        return f"{in_words(self.number)} joints ({self.joint}) held{hand} by {in_words(self.most)} {self.unit} at most{load}"
+        hand = ", by a hand at its end," if self.by_hand else ""
+        return f"{in_words(self.number)} joints ({self.joint}) whose largest effort{hand} is {in_words(self.most)} {self.unit}{load}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         found = [(joint.name, largest_effort(subject, joint, self.load)) for joint in self.joint.found(subject)]

@@ -14,6 +14,7 @@ from articad_bench.likeness_checks import moments
 from articad_bench.shape_checks import LEAN
 from articad_bench.solids import Round, rounds
 from articad_bench.subject import Subject
+from articad_bench.wanted import in_numbers
 
 Sides = tuple[float | None, float | None, float | None]
 
@@ -54,7 +55,10 @@ class Spaced(_Sized):
     @property
     def wanted(self) -> str:
         apart, each = (", ".join(f"{number:g}" for number in row) for row in (self.pitch, self.each))
-        return f"{self._parts} lie on {self.levels} levels along {self.axis}, {apart or 'nothing'} mm apart, {each} on each"
+        levels = (
+            f"{self.levels} levels along {in_numbers(self.axis)}, {apart} mm apart" if apart else f"one level along {in_numbers(self.axis)}"
+        )
+        return f"{self._parts} lie on {levels}, {each} on each"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         names = subject.of_size(self.mm, self.tolerance)
@@ -85,7 +89,7 @@ class Ordered(Check):
 
     @property
     def wanted(self) -> str:
-        return f"parts of {', '.join(_by(sides) for sides in self.sizes)} mm follow each other along {self.axis}"
+        return f"parts of {', '.join(_by(sides) for sides in self.sizes)} mm follow each other along {in_numbers(self.axis)}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         found = [
@@ -138,7 +142,7 @@ class Fitted(Check):
 
     @property
     def wanted(self) -> str:
-        along = f" along {self.axis}" if self.axis else ""
+        along = f" along {in_numbers(self.axis)}" if self.axis else ""
         return f"{in_words(self.number)} round outsides of {self.diameter:g} mm{along} sit in holes with {in_words(self.play)} mm of play"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
