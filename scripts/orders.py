@@ -23,6 +23,7 @@ import numpy as np
 
 import articad
 from articad.agents.pipeline import replay
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.disassembly.opened import step_poses
@@ -128,7 +129,8 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
             continue
         poses = step_poses(assembly.mechanism, step, order.base)
         ways, permitted = Ways(scene, poses), {frozenset(pair[:2]) for pair in step.permitted}
-        boxes = {name: np.array([(p := ways.points(name)).min(axis=0), p.max(axis=0)]) for name in (*step.parts, *step.onto)}
+        points = {name: ways.points(name) for name in (*step.parts, *step.onto)}
+        standing = {name: _box(points[name]) for name in step.onto}
         beyond = np.zeros(3)
         for move in reversed(step.moves):  # out again
             for share in np.linspace(0, 1, PLACES):
@@ -138,8 +140,9 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
                     moved = moved @ SE3.from_axis_angle(-np.array(move.direction), share * move.turns * 2 * np.pi, about=move.axis_point)
                 places += 1
                 for part in step.parts:
+                    low, high = _box(moved.apply(points[part]))
                     for other in step.onto:
-                        near = (boxes[part][0] + offset <= boxes[other][1]).all() and (boxes[part][1] + offset >= boxes[other][0]).all()
+                        near = (low <= standing[other][1]).all() and (high >= standing[other][0]).all()
                         if not near or frozenset((part, other)) in permitted:
                             continue
                         pairs += 1
@@ -148,6 +151,11 @@ def sampled(assembly: Assembly, order: AssemblyOrder) -> dict[str, Any]:
                         worst = max(worst, found.depth - ways.depth(part, other))
             beyond = beyond - move.length_mm * np.array(move.direction)
     return {"places": places, "pairs": pairs, "worst_mm": None if np.isinf(worst) else round(float(worst), 6)}
+
+
+def _box(points: FloatArray) -> FloatArray:
+    """Return the least and the greatest coordinates of points, `(2, 3)`."""
+    return np.array([points.min(axis=0), points.max(axis=0)])
 
 
 LOOKED: Final[Mapping[str, str]] = {

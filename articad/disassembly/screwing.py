@@ -65,7 +65,7 @@ def screw_out(ways: Ways, joint: Joint, moving: Sequence[str], staying: Sequence
     frame = ways.poses[joint.parent] @ joint.T_parent_connector
     way, lead = sense * np.asarray(frame.z_axis), abs(joint.lead)
     turns = math.ceil(ways.clear_length([inside], [outside], way) / lead)
-    if turns > _MOST_TURNS:
+    if not 0 < turns <= _MOST_TURNS:  # parts that are apart already are not turned
         return None
     handed = math.copysign(1.0, joint.lead)
     for turned in np.arange(1, turns * _EACH_TURN + 1) / _EACH_TURN:

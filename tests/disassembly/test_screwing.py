@@ -72,3 +72,15 @@ def test_a_thread_of_the_other_hand_does_not_come_out() -> None:
 def test_a_bolt_with_two_heads_does_not_come_out() -> None:
     both = thread(5, 20) + HEAD.translate([0, 0, 20]) + HEAD.translate([0, 0, -4])
     assert not screwed(both, nut()).assembly_order().ok
+
+
+def test_what_is_beside_its_thread_already_is_not_turned_out_of_a_closed_cage() -> None:
+    """A bolt above its block in a cage that is fixed to the block: nothing lets it out, and no step has a way without a direction."""
+    cage = m3.Manifold.cube([44, 44, 40]) - m3.Manifold.cube([40, 40, 36]).translate([2, 2, 2])
+    solids = {"block": nut() - HEAD, "bolt": HEAD.translate([0, 0, 20]), "cage": cage.translate([-22, -22, 13])}
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in solids.items()]
+    joints = [joint("turn", "screw", "block", "bolt", lower=(-0.01,), upper=(0.01,), lead=LEAD), joint("held", "fixed", "block", "cage")]
+    order = Assembly.from_parts("caged", parts=parts, joints=joints, ground="block").assembly_order()
+
+    assert not order.ok
+    assert all(math.isfinite(number) for step in order.steps for move in step.moves for number in move.direction)
