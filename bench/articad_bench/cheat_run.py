@@ -20,6 +20,8 @@ from articad.kernels.kernel import BuildCache, PartKernel
 from articad.processes import scratch
 from articad_bench.bindings import DETAIL
 from articad_bench.cheats import CHEATS
+from articad_bench.check import Check
+from articad_bench.heading import QUARTERS, is_directed
 from articad_bench.likeness_checks import handedness
 from articad_bench.reference import given, reference, reference_folders, references
 from articad_bench.shape_checks import placed, same_parts
@@ -248,12 +250,23 @@ def _judged(task: Task, cheat: StagedCheat, digest: str) -> CheatRow | None:
 
 
 def refused_by(task: Task, subject: Subject, stage: int = 0) -> tuple[str, str] | None:
-    """Return kind and measurement of a check of a stage that does not hold, those that cost little first; None if all hold."""
+    """Return kind and measurement of a check of a stage that does not hold, cheap ones first; None if all hold, as it may be turned."""
     order = {kind: place for place, kind in enumerate(COSTLY, start=1)}
-    for check in sorted(task.stages[stage], key=lambda check: order.get(check.kind, 0)):
+    checks = sorted(task.stages[stage], key=lambda check: order.get(check.kind, 0))
+    first = _refusing(checks, subject)
+    if first is None or not task.may_turn or not is_directed(first[0]):
+        return first and (first[0].kind, first[1])
+    if any(_refusing(checks, subject.turned(quarters)) is None for quarters in QUARTERS):
+        return None
+    return first[0].kind, first[1]
+
+
+def _refusing(checks: Sequence[Check], subject: Subject) -> tuple[Check, str] | None:
+    """Return the first check that does not hold, and what it measured; None if all hold."""
+    for check in checks:
         judgement = check.judge(subject)
         if not judgement.ok:
-            return check.kind, judgement.measured
+            return check, judgement.measured
     return None
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from articad.errors import ArticadError
 from articad.plan.fields import PlanObject
@@ -12,6 +12,7 @@ from articad_bench.subject import Subject
 
 Bounds = tuple[float, float]
 Vector = tuple[float, float, float]
+ROUNDED: Final = 1e-6  # share of a bound by which a measurement may miss it: kernels, files and poses round
 
 
 @dataclass(frozen=True)
@@ -62,3 +63,9 @@ def in_words(bounds: Bounds) -> str:
     """Return a range in words."""
     low, high = bounds
     return f"{low:g}" if low == high else f"at least {low:g}" if high == 999 else f"{low:g} to {high:g}"
+
+
+def within(measured: float, bounds: Bounds) -> bool:
+    """Return whether a measurement lies within bounds; who models exactly a bound is not refused for the last digits of a mesh."""
+    low, high = (ROUNDED * max(1.0, abs(bound)) for bound in bounds)
+    return bounds[0] - low <= measured <= bounds[1] + high

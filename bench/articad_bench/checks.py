@@ -24,7 +24,7 @@ from articad.interference.gauge import Gauge, placed
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
-from articad_bench.check import Bounds, Vector, in_words
+from articad_bench.check import Bounds, Vector, in_words, within
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
 from articad_bench.edit_checks import Shifted
@@ -33,6 +33,7 @@ from articad_bench.likeness_checks import Arranged, Handed, Matter
 from articad_bench.machined_checks import Machined, Toleranced
 from articad_bench.module_checks import Fitted, Ordered, Spaced, Turned
 from articad_bench.path_checks import PATH, Level, Straight, Turns
+from articad_bench.proofs import proven
 from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
 from articad_bench.spacing_checks import Links, Square
@@ -146,7 +147,7 @@ class Mass(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         mass = subject.assembly.mass().mass
-        return self.kg[0] <= mass <= self.kg[1], f"{mass:.4g} kg"
+        return within(mass, self.kg), f"{mass:.4g} kg"
 
 
 class Solids(Check):
@@ -230,8 +231,8 @@ class Certified(Check):
         return f"motion proven free within {self.seconds:g} s"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        certificate = _bare(subject.assembly).certify(pairs=self.pairs, budget=self.seconds)
-        return certificate.ok and bool(_moving(subject)), "; ".join(f.message for f in certificate.findings.errors[:3]) or "proven"
+        ok, told = proven(subject, _bare(subject.assembly), pairs=self.pairs, seconds=self.seconds)
+        return ok and bool(_moving(subject)), told
 
 
 class Loops(Check):
@@ -294,7 +295,7 @@ class Rise(Check):
         for driver in subject.assembly.drivers:
             ends = [subject.corners(poses)[:, column] for poses in _stroke_poses(subject, driver.name)]
             best = max(best, float(np.ptp([end[1] for end in ends])), float(np.ptp([end[0] for end in ends]))) if ends else best
-        return self.mm[0] <= best <= self.mm[1], f"{best:.4g} mm"
+        return within(best, self.mm), f"{best:.4g} mm"
 
 
 class Travel(Check):
@@ -311,7 +312,7 @@ class Travel(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         moved = [_travel(subject, joint) for joint in self.joint.found(subject)]
-        count = sum(self.by[0] <= travel <= self.by[1] for travel in moved)
+        count = sum(within(travel, self.by) for travel in moved)
         return self.number[0] <= count <= self.number[1], f"{count} ({', '.join(f'{travel:.4g}' for travel in moved) or 'no such joint'})"
 
 
@@ -338,7 +339,7 @@ class Reaches(Check):
         bodies = {joint.name: _moved_bodies(subject, joint) for joint in joints}
         reached = _reached(subject, {body for each in bodies.values() for body in each}, np.array(self.toward))
         ways = [[reached[body] for body in bodies[joint.name]] for joint in joints]
-        count = sum(any(self.mm[0] <= mm <= self.mm[1] for mm in way) for way in ways)
+        count = sum(any(within(mm, self.mm) for mm in way) for way in ways)
         told = ", ".join(" or ".join(f"{mm:.4g}" for mm in way) for way in ways[:12])
         return self.number[0] <= count <= self.number[1], f"{count} ({told or 'no such joint'} mm)"
 
@@ -368,7 +369,7 @@ class Moves(Check):
         return self.number[0] <= count <= self.number[1], f"{count} ({told or 'no such joint'})"
 
     def _are(self, volume: float, size: float) -> bool:
-        return self.volume[0] <= volume <= self.volume[1] and self.size[0] <= size <= self.size[1]
+        return within(volume, self.volume) and within(size, self.size)
 
 
 class Gap(Check):
@@ -393,14 +394,14 @@ class Gap(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         gaps = [self._gap(subject, joint) for joint in self.joint.found(subject) if _shaped(subject, joint)]
-        count = sum(self.mm[0] <= gap <= self.mm[1] for gap in gaps)
+        count = sum(within(gap, self.mm) for gap in gaps)
         told = ", ".join(f"{gap:.3g}" for gap in gaps)
         return self.number[0] <= count <= self.number[1], f"{count} ({told} mm)"
 
     def _gap(self, subject: Subject, joint: Joint) -> float:
         near = Fit(within=self.within)
         gap = _between_bodies(subject, joint) if self.bodies else Gauge(subject.scene, joint, near).rest()
-        if gap < -CONTACT_MM or self.mm[0] <= gap <= self.mm[1]:
+        if gap < -CONTACT_MM or within(gap, self.mm):
             return gap
         # a little off its seat to either side, edges that cross each other do not touch
         plays = (_least_play(subject, joint, near, lifted) for lifted in (0.0, CONTACT_MM, -CONTACT_MM))
@@ -620,17 +621,9 @@ def _moving(subject: Subject) -> list[Joint]:
     return [joint for joint in subject.assembly.joints if joint.type is not JointType.FIXED]
 
 
-def _stroke(subject: Subject, driver: str, steps: int = STROKE) -> FloatArray:
-    reached = subject.driver_range(driver)
-    if reached is None:
-        return np.empty(0)
-    inset = 1e-3 * (reached[1] - reached[0])  # the very ends may be dead points
-    return np.linspace(reached[0] + inset, reached[1] - inset, steps)
-
-
 def _travel(subject: Subject, joint: Joint) -> float:
     """Return how far a joint goes while one driver moves, the most that any of them makes it [deg or mm]."""
-    strokes = [(driver.name, _stroke(subject, driver.name, PATH)) for driver in subject.assembly.drivers]
+    strokes = [(driver.name, subject.stroke(driver.name, PATH)) for driver in subject.assembly.drivers]
     ranges = [float(np.ptp(subject.values(joint.name, driver, points))) for driver, points in strokes if len(points)]
     return max(ranges, default=0.0) * subject.per_unit(joint)
 
@@ -638,7 +631,7 @@ def _travel(subject: Subject, joint: Joint) -> float:
 def _stroke_poses(subject: Subject, driver: str) -> Iterator[Any]:
     assembly = subject.assembly
     column = [coordinate.name for coordinate in assembly.drivers].index(driver)
-    for point in _stroke(subject, driver):
+    for point in subject.stroke(driver, STROKE):
         q = np.array(assembly.mechanism.rest)
         q[column] = point
         yield dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
@@ -717,7 +710,7 @@ def _closing_error(subject: Subject, driver: str) -> float:
     worst = 0.0
     mechanism = subject.assembly.mechanism
     column = [coordinate.name for coordinate in subject.assembly.drivers].index(driver)
-    for point in _stroke(subject, driver):
+    for point in subject.stroke(driver, STROKE):
         q = np.array(mechanism.rest)
         q[column] = point
         values, poses = mechanism.configuration(q), dict(zip(mechanism.parts, mechanism.poses(q), strict=True))
@@ -730,7 +723,7 @@ def _closing_error(subject: Subject, driver: str) -> float:
 def _ratio(subject: Subject, leader: Joint, follower: Joint) -> float | None:
     """Return the change of one joint by that of another over a small stroke of each driver, in degrees and mm; None if it does not follow."""
     for driver in subject.assembly.drivers:
-        points = _stroke(subject, driver.name)
+        points = subject.stroke(driver.name, STROKE)
         if not len(points):
             continue
         led, followed = subject.values(leader.name, driver.name, points), subject.values(follower.name, driver.name, points)

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from articad.arrays import FloatArray
-from articad_bench.check import Bounds, Check, Vector, in_words
+from articad_bench.check import Bounds, Check, Vector, in_words, within
 from articad_bench.module_checks import middle_along
 from articad_bench.subject import Subject
 
@@ -37,7 +37,7 @@ class Shifted(Check):
         shapes = [shape for shape, places in before.items() if len(after.get(shape, ())) == len(places)]
         kept = [pair for shape in shapes for pair in zip(before[shape], after[shape], strict=True)]
         farther = [abs(b - d) - abs(a - c) for (a, b), (c, d) in combinations(kept, 2)]
-        count = sum(self.mm[0] <= mm <= self.mm[1] for mm in farther)
+        count = sum(within(mm, self.mm) for mm in farther)
         told = ", ".join(f"{mm:.4g}" for mm in sorted(farther)[-12:])
         return self.number[0] <= count <= self.number[1], f"{count} of {len(farther)} ({told or 'no pair is unchanged'} mm)"
 

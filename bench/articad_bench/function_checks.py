@@ -16,7 +16,7 @@ from articad.connectors import SE3
 from articad.errors import KinematicsError, LimitError
 from articad.kinematics.dynamics import GRAVITY
 from articad.kinematics.joints import Joint, JointType
-from articad_bench.check import Bounds, Check, in_words
+from articad_bench.check import Bounds, Check, in_words, within
 from articad_bench.strength_checks import level_tops
 from articad_bench.subject import Subject
 from articad_bench.wanted import JointWanted
@@ -92,7 +92,7 @@ class Effort(Check):
     def measured(self, subject: Subject) -> tuple[bool, str]:
         found = [(joint.name, largest_effort(subject, joint, self.load)) for joint in self.joint.found(subject)]
         efforts = [(name, effort / (_reach(subject, name) if self.by_hand else 1.0)) for name, effort in found if effort is not None]
-        count = sum(self.most[0] <= effort <= self.most[1] for _, effort in efforts)
+        count = sum(within(effort, self.most) for _, effort in efforts)
         told = ", ".join(f"{name} {effort:.4g} {self.unit}" for name, effort in efforts)
         return self.number[0] <= count <= self.number[1], f"{count} ({told or 'no such joint moves'})"
 

@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from articad.arrays import FloatArray
 from articad.geometry import TriMesh
-from articad_bench.check import Bounds, Check
+from articad_bench.check import Bounds, Check, within
 from articad_bench.shape_checks import placed
 from articad_bench.subject import Subject
 
@@ -119,7 +119,7 @@ class Matter(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         share = filled(subject)
-        return self.share[0] <= share <= self.share[1], f"{100 * share:.2g} %"
+        return within(share, self.share), f"{100 * share:.2g} %"
 
 
 def filled(subject: Subject) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from articad.arrays import FloatArray
 from articad.connectors import SE3
 from articad.kinematics.joints import JointType
-from articad_bench.check import Bounds, Check, in_words
+from articad_bench.check import Bounds, Check, in_words, within
 from articad_bench.subject import Subject
 
 PATH: Final = 121  # values of a driver at which a path is measured
@@ -33,7 +33,7 @@ class Straight(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         best = max((_straight(path, self.off) for path in _paths(subject)), default=0.0)
-        return self.mm[0] <= best <= self.mm[1], f"{best:.4g} mm"
+        return within(best, self.mm), f"{best:.4g} mm"
 
 
 class Level(Check):
@@ -53,7 +53,7 @@ class Level(Check):
             for column, name in enumerate(subject.assembly.mechanism.parts):
                 if name in moved and float(np.max(poses[:, column].angle_to(subject.rest[name]))) <= LEVEL_RAD:
                     moved[name] = max(moved[name], _farthest(poses[:, column].translation))
-        found = {name: distance for name, distance in moved.items() if self.mm[0] <= distance <= self.mm[1]}
+        found = {name: distance for name, distance in moved.items() if within(distance, self.mm)}
         told = ", ".join(f"{name} {distance:.4g}" for name, distance in moved.items() if distance > 1e-6)
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({told or 'none moves without turning'})"
 
@@ -120,12 +120,11 @@ def _strokes(subject: Subject) -> Iterator[SE3]:
     """Yield the poses of all parts along each driver's range, the other drivers at rest `(PATH, N)`."""
     assembly = subject.assembly
     for column, driver in enumerate(assembly.drivers):
-        reached = subject.driver_range(driver.name)
-        if reached is None:
+        stroke = subject.stroke(driver.name, PATH)
+        if not len(stroke):
             continue
-        inset = 1e-3 * (reached[1] - reached[0])  # the very ends may be dead points
         q = np.repeat(np.array(assembly.mechanism.rest)[None], PATH, axis=0)
-        q[:, column] = np.linspace(reached[0] + inset, reached[1] - inset, PATH)
+        q[:, column] = stroke
         yield assembly.poses(q)
 
 

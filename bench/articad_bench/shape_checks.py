@@ -9,7 +9,7 @@ from scipy.optimize import linear_sum_assignment
 
 from articad.arrays import FloatArray
 from articad.geometry import TriMesh
-from articad_bench.check import Bounds, Check, Vector, in_words
+from articad_bench.check import Bounds, Check, Vector, in_words, within
 from articad_bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
 from articad_bench.subject import Subject
 
@@ -67,7 +67,7 @@ class _Rounds(Check):
             return False
         if self.axis is not None and abs(float(found.axis @ np.array(self.axis))) < LEAN * float(np.linalg.norm(self.axis)):
             return False
-        return self.length is None or self.length[0] <= found.length <= self.length[1]
+        return self.length is None or within(found.length, self.length)
 
 
 class Holes(_Rounds):
@@ -113,7 +113,7 @@ class Wall(Check):
         shares = {}
         for name, mesh in zip(subject.shaped, placed(subject), strict=True):
             thick = wall_thickness(mesh)
-            shares[name] = float(((thick >= self.mm[0]) & (thick <= self.mm[1])).mean())
+            shares[name] = float(np.mean([within(float(mm), self.mm) for mm in thick]))
         count = sum(share >= self.share for share in shares.values())
         return self.number[0] <= count <= self.number[1], f"{count} ({', '.join(f'{n} {100 * s:.0f} %' for n, s in shares.items())})"
 
@@ -130,7 +130,7 @@ class Volume(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         volume = sum(abs(mesh.volume) for mesh in placed(subject)) / 1000
-        return self.cm3[0] <= volume <= self.cm3[1], f"{volume:.4g} cm³"
+        return within(volume, self.cm3), f"{volume:.4g} cm³"
 
 
 class Holds(Check):
@@ -145,7 +145,7 @@ class Holds(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         held = held_volume(placed(subject)) / 1000
-        return self.ml[0] <= held <= self.ml[1], f"{held:.4g} ml"
+        return within(held, self.ml), f"{held:.4g} ml"
 
 
 class Stands(Check):

@@ -13,7 +13,7 @@ from articad.arrays import FloatArray, IntArray
 from articad.geometry import TriMesh
 from articad.kinematics.joints import JointType
 from articad_bench.beams import Bent, Support, beam
-from articad_bench.check import Bounds, Check, in_words
+from articad_bench.check import Bounds, Check, in_words, within
 from articad_bench.subject import Subject
 
 G: Final = 9.81  # m/s²
@@ -97,7 +97,7 @@ class Carries(Check):
     def _top(self, subject: Subject, name: str) -> Top | None:
         """Return the largest surface of a part at that height, if it is large enough and mostly there."""
         wanted = sorted(self.top)
-        there = [top for top in level_tops(subject, name) if self.level[0] <= top.height <= self.level[1]]
+        there = [top for top in level_tops(subject, name) if within(top.height, self.level)]
         large = [top for top in there if (top.sides >= np.array(wanted) - FLOOR_MM).all() and top.area >= wanted[0] * wanted[1] / 2]
         return max(large, key=lambda top: top.area, default=None)
 

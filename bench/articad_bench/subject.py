@@ -24,6 +24,7 @@ from articad.interference.report import Checks
 from articad.interference.scene import Scene
 from articad.interference.surface import surface_distance, whole_surface
 from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import FeasibleRange
 from articad_bench.solids import boxes_by_faces
 
@@ -35,6 +36,9 @@ _ASIDE: Final = {str(kind): {"x", "y"} for kind in JointType} | {
     str(JointType.PLANAR): {"z"},
     str(JointType.SLIDER): {"x", "y"},
 }  # directions in which a body must not be free to leave its joint
+
+_SOUND: Final = ("declared limit", "limit of", "endless")  # what may end the range of a driver without a dead point
+DEAD: Final = 1e-3  # of a driver's range, by which its values keep away from a dead point
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,17 @@ class Subject:
     def __post_init__(self) -> None:
         if self.assembly.waivers:  # whoever is judged does not say what is allowed
             object.__setattr__(self, "assembly", replace(self.assembly, waivers=()))
+
+    def turned(self, quarters: int) -> Subject:
+        """Return the product, and what was there before, turned by quarters about the upright axis; its file stays as it is."""
+        turn = SE3.rot_z(quarters * math.pi / 2)
+
+        def other(assembly: Assembly) -> Assembly:
+            known = assembly.mechanism
+            mechanism = Mechanism(known.parts, known.ground, known.given_joints, known.couplings, turn @ known.T_ground)
+            return replace(assembly, mechanism=mechanism)
+
+        return replace(self, assembly=other(self.assembly), before=None if self.before is None else other(self.before))
 
     @cached_property
     def rest(self) -> Poses:
@@ -223,3 +238,22 @@ class Subject:
         if {"endless", "not followed further"} & {reached.lower_reason, reached.upper_reason}:
             return 0.0, turns * 2 * math.pi
         return reached.lower, reached.upper
+
+    def stroke(self, driver: str, steps: int) -> FloatArray:
+        """Return values of a driver from one end of its range to the other, both included, except for ends that are dead points of a loop."""
+        reached = self.driver_range(driver)
+        if reached is None:
+            return np.empty(0)
+        inset = DEAD * (reached[1] - reached[0])
+        low, high = (0.0 if sound else inset for sound in self._sound_ends(driver, reached))
+        return np.linspace(reached[0] + low, reached[1] - high, steps)
+
+    def _sound_ends(self, driver: str, reached: tuple[float, float]) -> list[bool]:
+        """Return whether loops can be closed at either end of a driver's range, without a dead point there."""
+        feasible = self._feasible[driver]
+        assert feasible is not None
+        q = np.repeat(np.array(self.assembly.mechanism.rest)[None], 2, axis=0)
+        q[:, [coordinate.name for coordinate in self.assembly.drivers].index(driver)] = reached
+        closed = self.assembly.solve(q).reached
+        reasons = feasible.lower_reason, feasible.upper_reason
+        return [bool(ok) and reason.startswith(_SOUND) for ok, reason in zip(closed, reasons, strict=True)]

@@ -52,6 +52,7 @@ from articad.files import RECORD_BYTES, read_file
 from articad.plan.fields import PlanObject
 from articad.processes import scratch
 from articad_bench.checks import AnyCheck, Judgement
+from articad_bench.heading import judged, names_direction
 from articad_bench.subject import Subject
 
 TASKS: Final = Path(__file__).with_name("tasks")
@@ -180,9 +181,15 @@ class Task(PlanObject):
             found.append((*(check for check in found[-1] if check.kind not in restated), *edit.checks))
         return tuple(found)
 
+    @property
+    def may_turn(self) -> bool:
+        """Whether the product may stand turned by quarters about the upright axis: nothing is there before, and no text names a level axis."""
+        notes = () if self.drawing is None else self.drawing.notes
+        return self.given is None and not names_direction([self.prompt, *(edit.prompt for edit in self.edits), *notes])
+
     def judge(self, subject: Subject, stage: int = 0) -> tuple[Judgement, ...]:
         """Return what every check says of the product at a stage, the first by default; the subject holds what it was at the stage before."""
-        return tuple(check.judge(subject) for check in self.stages[stage])
+        return judged(self.stages[stage], subject, free=self.may_turn)
 
 
 def read_json(file: Path) -> Any:

@@ -7,7 +7,7 @@ from typing import Final, Literal
 import numpy as np
 
 from articad.kinematics.joints import JointType
-from articad_bench.check import Bounds, Check, in_words
+from articad_bench.check import Bounds, Check, in_words, within
 from articad_bench.subject import Subject
 
 _SIDES: Final = {"x": 0, "y": 1, "z": 2}
@@ -28,7 +28,7 @@ class Extent(Check):
     def measured(self, subject: Subject) -> tuple[bool, str]:
         size = subject.size
         side = float(np.max(size)) if self.side == "longest" else float(size[_SIDES[self.side]])
-        return self.mm[0] <= side <= self.mm[1], f"{side:.4g} mm"
+        return within(side, self.mm), f"{side:.4g} mm"
 
 
 class Threads(Check):
