@@ -15,9 +15,10 @@ from articad_bench.stack_checks import Stack
 from articad_bench.task import Task
 
 Format = Literal["urdf", "mjcf", "step", "freecad"]
-Asked = Literal["motion", "loop", "cone", "force", "fit", "weight", "linear"]
+Asked = Literal["motion", "loop", "cone", "force", "fit", "weight", "linear", "swing"]
 """What a product has: joints that move, a closed loop, a ball whose cone is limited and whose twist has a range of its own, parts that are pressed
-or snapped together, declared fits, a mass that is asked for, joints coupled by other means than gears, belts, racks and screws."""
+or snapped together, declared fits, a mass that is asked for, joints coupled by other means than gears, belts, racks and screws,
+a universal joint whose angles are limited."""
 
 MOTION: Final = frozenset(
     {
@@ -76,6 +77,7 @@ UNSAID: Final = (
         )
     ),
     Unsaid("freecad", "cone", _OF_A_CONE, "FreeCAD limits no angle of a ball."),
+    Unsaid("freecad", "swing", _OF_A_CONE | {"moves"}, "FreeCAD limits no angle of a universal joint."),
     Unsaid("freecad", "linear", MOTION, "FreeCAD couples joints by gears, belts, racks and screws alone."),
     Unsaid("freecad", "weight", frozenset({"mass"}), "FreeCAD holds no densities but those of its own library."),
     Unsaid("step", "motion", MOTION | {"lead", "threads", "joined", "arranged", "carries"}, "STEP holds no joints."),
@@ -98,6 +100,8 @@ def asked_for(task: Task) -> set[Asked]:
             found.add("loop")
         if isinstance(check, Joints) and check.joint.type is JointType.BALL and check.joint.span not in {None, "endless"}:
             found.add("cone")
+        if isinstance(check, Joints) and check.joint.type is JointType.UNIVERSAL and check.joint.span not in {None, "endless"}:
+            found.add("swing")
         if isinstance(check, PutTogether) and check.force:
             found.add("force")
         if isinstance(check, Mass):
