@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args
@@ -68,10 +69,11 @@ class Poses(Mapping[str, SE3]):
         self.stacked = stacked
 
     def __getitem__(self, part: str) -> SE3:
-        try:
-            return self.stacked[self._names.index(part)]
-        except ValueError:
-            raise KeyError(part) from None
+        return self.stacked[self._places[part]]
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {name: place for place, name in enumerate(self._names)}
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

@@ -359,6 +359,61 @@ FCSTDS: dict[str, Callable[[], bytes]] = {
 }
 
 
+def shown(objects: dict[str, tuple[str, str]], *, colored: bool = False) -> bytes:
+    """Return a document whose assembly shows objects of these types and properties, of which the first one is grounded."""
+    top = linked("Group", [name for name in objects if name[0] != "_"] + ["G"])
+    objects = {"A": ("Assembly::AssemblyObject", top), "G": ("App::FeaturePython", linked("ObjectToGround", ["p0"]))} | objects
+    rows = "".join(f'<Object name="{name}" type="{kind}"/>' for name, (kind, _) in objects.items())
+    data = "".join(f'<Object name="{name}"><Properties>{inside}</Properties></Object>' for name, (_, inside) in objects.items())
+    text = f"<Document><Objects>{rows}</Objects><ObjectData>{data}</ObjectData></Document>"
+    color = '<Properties><Property name="ShapeColor"><PropertyColor value="255"/></Property></Properties>'
+    painted = "".join(f'<ViewProvider name="{name}">{color}</ViewProvider>' for name in objects if colored)
+    gui = f"<Document><ViewProviderData>{painted}</ViewProviderData></Document>"
+    return archive(Document_xml=text.encode(), GuiDocument_xml=gui.encode())
+
+
+def linked(key: str, names: list[str]) -> str:
+    return f'<Property name="{key}"><LinkList>{"".join(f"<Link value={name!r}/>" for name in names)}</LinkList></Property>'
+
+
+def string(key: str, value: str) -> str:
+    return f'<Property name="{key}"><String value="{value}"/></Property>'
+
+
+def of_one_label(count: int) -> dict[str, tuple[str, str]]:
+    return {f"p{place}": ("App::Part", string("Label", "same")) for place in range(count)}
+
+
+def all_grounded() -> bytes:
+    grounded = {f"_g{place}": ("App::FeaturePython", linked("ObjectToGround", [f"p{place}"])) for place in range(14_000)}
+    return shown(of_one_label(14_000) | grounded | {"J": ("Assembly::JointGroup", linked("Group", list(grounded)))})
+
+
+def one_folder(kind: str) -> bytes:
+    """Return a document of thousands of parts that share a group of thousands of shapes."""
+    shapes = {f"_s{place}": ("App::Part", "") for place in range(9_000)}
+    folder = {"_f": (kind, linked("Group", list(shapes)))}
+    return shown({f"p{place}": ("App::Part", linked("Group", ["_f"])) for place in range(9_000)} | folder | shapes)
+
+
+def copies(kind: str, inside: str) -> bytes:
+    """Return a document of thousands of links to one part that has thousands of objects."""
+    held = {f"_s{place}": (kind, inside.format(place)) for place in range(9_000)}
+    part = {"p0": ("App::Part", linked("Group", list(held)))}
+    return shown(part | {f"p{place}": ("App::Link", linked("LinkedObject", ["p0"])) for place in range(1, 9_000)} | held)
+
+
+FCSTDS |= {
+    "parts of one label": lambda: shown(of_one_label(15_000)),
+    "parts of one label and colour": lambda: shown(of_one_label(15_000), colored=True),
+    "parts that are all grounded": all_grounded,
+    "parts with one folder": lambda: one_folder("App::DocumentObjectGroup"),
+    "parts with one part in them": lambda: one_folder("App::Part"),
+    "copies of a part of many connectors": lambda: copies("PartDesign::CoordinateSystem", string("ArticadConnector", "c{}")),
+    "copies of a part of many shapes": lambda: copies("Part::Feature", '<Property name="Shape"><Part file=""/></Property>'),
+}
+
+
 def listing(folder: Path) -> str:
     """A document that lists two hundred others, each a small archive of a large text."""
     part = archive(Document_xml=b"<Document><Objects/><ObjectData/>" + b" " * (60 << 20) + b"</Document>")

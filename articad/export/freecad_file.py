@@ -12,6 +12,7 @@ import struct
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -54,6 +55,21 @@ class Appearance:
     tips: Sequence[str] = ()
     views: Mapping[str, str] = field(default_factory=dict)
 
+    @cached_property
+    def out_of_sight(self) -> frozenset[str]:
+        """The objects that are hidden, for a look at each object."""
+        return frozenset(self.hidden)
+
+    @cached_property
+    def moving(self) -> frozenset[str]:
+        """The objects that are joints, likewise."""
+        return frozenset(self.joints)
+
+    @cached_property
+    def named(self) -> frozenset[str]:
+        """The objects that are shown whatever their type."""
+        return frozenset((*self.joints, *self.tips, *([] if self.grounded is None else [self.grounded])))
+
 
 def normalised(content: bytes, look: Appearance | None = None, written: Content | None = None) -> bytes:
     """Return a FreeCAD file with fixed dates, Uids and order, and with its appearance.
@@ -84,11 +100,11 @@ def _carry(root: etree._Element, written: Content) -> None:
 
 
 def _is_shown(name: str, kind: str, look: Appearance) -> bool:
-    if name in look.hidden:
+    if name in look.out_of_sight:
         return False
     if kind.startswith("TechDraw::"):
         return kind != "TechDraw::DrawPage"  # a page that is shown opens its tab with the document
-    return kind in _SHOWN or kind in _GROUPS or name in look.joints or name == look.grounded or name in look.tips
+    return kind in _SHOWN or kind in _GROUPS or name in look.named
 
 
 def _show(root: etree._Element, types: Mapping[str, str], look: Appearance) -> None:
@@ -123,7 +139,7 @@ def _provider(name: str, kind: str, look: Appearance) -> str:
         packed_color = (red << 24 | green << 16 | blue << 8) & 0xFFFFFFFF
         properties += _link_color(packed_color) if kind == "App::Link" else []
         properties.append(f'<Property name="ShapeColor" type="App::PropertyColor"><PropertyColor value="{packed_color}"/></Property>')
-    if name in look.joints or name == look.grounded:
+    if name in look.moving or name == look.grounded:
         provider = "ViewProviderGroundedJoint" if name == look.grounded else "ViewProviderJoint"
         proxy = f'<Python value="{_NOTHING}" encoded="yes" module="JointObject" class="{provider}"/>'
         properties.append(f'<Property name="Proxy" type="App::PropertyPythonObject">{proxy}</Property>')

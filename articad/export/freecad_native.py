@@ -104,6 +104,7 @@ class _Writer:
         self.hidden: list[str] = []
         self.containers: dict[str, str] = {}  # part -> its App::Part, or that of its source
         self.shapes: dict[str, str] = {}
+        self.items = {part["name"]: part["object"] for part in job["parts"]}
         self.systems: dict[tuple[str, str], str] = {}
         self.labels: set[str] = {job["name"]}
         self.numbers: dict[str, int] = {}  # label -> the number that it gets next
@@ -343,10 +344,9 @@ class _Writer:
             _truth("Activated", value=joint["active"]),
             _proxy("Joint"),
         ]
-        objects = {part["name"]: part["object"] for part in self.job["parts"]}
         for number, side in enumerate(("parent", "child"), start=1):
             part, connector = joint[side], joint[f"{side}_connector"]
-            path, group = f"{objects[part]}.{self.systems[part, connector]}.", f"Joint Connector {number}"
+            path, group = f"{self.items[part]}.{self.systems[part, connector]}.", f"Joint Connector {number}"
             subs = [_row("Sub", value=path), _row("Sub", value=path)]
             link = _row("XLink", *subs, file="", stamp="", name="Assembly", count=2)
             properties += [

@@ -13,7 +13,7 @@ import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +46,8 @@ from articad.processes import scratch
 SAME_MM, SAME_RAD = 1e-9, 1e-12  # a frame this close to its record is replaced by the record
 SAME_MESH = 1e-5  # the same of a mesh in single precision
 SAME_SHAPE = 1e-9  # a volume, relative, and a centre, relative to the part's size: below, the recorded mass holds
+MAX_CONNECTORS = 200_000  # of all parts, those of copies included
+_SAID = 10  # findings about a shape that are repeated for each of its copies
 STANDS_MM, STANDS_RAD = 1e-4, 1e-5  # by which a part may stand elsewhere than its joints put it, before a finding says so
 _TYPES = {
     "Fixed": JointType.FIXED,
@@ -164,6 +166,11 @@ class _Model:
         self.ground = self.grounded[0]
         self.poses = {name: self._held[item] @ item.placement for name, item in self.parts.items()}
         self.colors = {self.document.path: self.document.colors()}
+        self._frames: dict[FreeCADObject, dict[str, SE3]] = {}  # of the connectors in each container
+        self._shapes: dict[FreeCADObject, list[tuple[FreeCADObject, SE3]]] = {}
+        self._painted: dict[FreeCADObject, str | None] = {}  # the colour of each container's shapes
+        self._planes: dict[FreeCADObject, dict[str, tuple[Any, Any]]] = {}  # point and normal of each planar face of a container's solid
+        self._shown = 0  # connectors of all parts, those of copies included
         self._solids: dict[FreeCADObject, tuple[Solid | None, tuple[Shape, ...]]] = {}
         self._masses: dict[FreeCADObject, list[MassProperties | None]] = {}
         self._wrong: dict[FreeCADObject, list[Finding]] = {}  # what was said of a shape when it was read
@@ -213,8 +220,23 @@ class _Model:
 
     def connectors(self, name: str) -> dict[str, SE3]:
         """Return the coordinate systems that articad made in a part."""
-        members = self.library.members(self.library.container(self.parts[name]))
-        return {text: item.placement for item in members if (text := item.text("ArticadConnector"))}
+        container = self.library.container(self.parts[name])
+        if container not in self._frames:
+            members = self.library.members(container)
+            self._frames[container] = {text: item.placement for item in members if (text := item.text("ArticadConnector"))}
+        self._shown += len(self._frames[container])
+        if self._shown > MAX_CONNECTORS:
+            raise unreadable(self.path, self.assembly.name, f"Its parts show more than {MAX_CONNECTORS} connectors, copies included.")
+        return self._frames[container]
+
+    def shapes(self, name: str) -> list[tuple[FreeCADObject, SE3]]:
+        """Return the bodies, solids and meshes of a part, each with the pose of its stored shape in the part's frame."""
+        return self._shapes_of(self.library.container(self.parts[name]))
+
+    def _shapes_of(self, container: FreeCADObject) -> list[tuple[FreeCADObject, SE3]]:
+        if container not in self._shapes:
+            self._shapes[container] = list(self.library.shapes(container))
+        return self._shapes[container]
 
     def solid(self, name: str) -> Solid | None:
         """Return a part's one solid in the part's own frame, measured by the confined worker; None where it is not one solid."""
@@ -227,13 +249,18 @@ class _Model:
     def color(self, name: str) -> str | None:
         """Return the colour that a window of FreeCAD stored of a part, or None."""
         item = self.parts[name]
-        for shown in (item, *(shape for shape, _ in self.library.shapes(self.library.container(item)))):
-            path = shown.document.path
-            if path not in self.colors:
-                self.colors[path] = shown.document.colors()
-            if (color := self.colors[path].get(shown.name)) is not None:
-                return color
-        return None
+        own, container = self._color(item), self.library.container(item)
+        if own is None and container not in self._painted:
+            found = (color for shape, _ in self.shapes(name) if (color := self._color(shape)) is not None)
+            self._painted[container] = next(found, None)
+        return self._painted[container] if own is None else own
+
+    def _color(self, shown: FreeCADObject) -> str | None:
+        """Return the colour that a window of FreeCAD stored of an object."""
+        path = shown.document.path
+        if path not in self.colors:
+            self.colors[path] = shown.document.colors()
+        return self.colors[path].get(shown.name)
 
     def _measured(self, name: str) -> tuple[Solid | None, tuple[Shape, ...]]:
         container = self.library.container(self.parts[name])
@@ -242,7 +269,7 @@ class _Model:
             self._solids[container] = self._read(container, name)
             self._wrong[container] = self.findings[start:]
         elif name not in self._asked:
-            for finding in self._wrong[container]:  # each copy lacks what its source lacks
+            for finding in self._wrong[container][:_SAID]:  # each copy lacks what its source lacks
                 self._misshapen(name, finding.message.replace(repr(finding.parts[0]), repr(name)), finding.hint)
         self._asked.add(name)
         return self._solids[container]
@@ -250,7 +277,7 @@ class _Model:
     def _read(self, container: FreeCADObject, name: str) -> tuple[Solid | None, tuple[Shape, ...]]:
         solids, shapes, wrong = [], [], len(self.findings)
         masses = self._masses.setdefault(container, [])
-        for item, T in self.library.shapes(container):
+        for item, T in self.shapes(name):
             if item.type == "Mesh::Feature":
                 shapes += self._mesh(item, T, name)
                 masses.append(None)
@@ -311,9 +338,7 @@ class _Model:
         """Report that a part's shape has changed, unless an edit of what shapes it is reported already."""
         if self.written is None:
             return
-        start = [shape for shape, _ in self.library.shapes(self.library.container(self.parts[name]))]
-        shaping = self.used(start)
-        if not any(edit.object in shaping or edit.kind in ("added", "deleted", "group") for edit in self.edits):
+        if not self._regrouped and self._edited.isdisjoint(shape.name for shape, _ in self.shapes(name) if shape.document is self.document):
             self.findings.append(
                 Finding(
                     code="I_FREECAD_EDIT",
@@ -324,37 +349,45 @@ class _Model:
                 )
             )
 
-    def used(self, start: list[FreeCADObject] | None = None) -> set[str]:
-        """Return the objects of the document on which others depend, by links and expressions, those included.
+    @cached_property
+    def _regrouped(self) -> bool:
+        """Whether objects were added, deleted or put into another group."""
+        return any(edit.kind in ("added", "deleted", "group") for edit in self.edits)
 
-        Args:
-            start: Where to begin; by default all parts, their shapes and connectors, and all joints.
-        """
-        if start is None:
-            start = [*self.members, *self.joint_items()]
-            for item in self.members:
-                container = self.library.container(item)
-                start += [shape for shape, _ in self.library.shapes(container)]
-                start += [member for member in self.library.members(container) if member.text("ArticadConnector")]
+    @cached_property
+    def _edited(self) -> set[str]:
+        """The objects with an edit, and those that depend on them."""
+        users: dict[str, list[str]] = {}
+        for name, needed in self._needs.items():
+            for link in needed:
+                users.setdefault(link, []).append(name)
+        return _closure([edit.object for edit in self.edits], users)
+
+    @cached_property
+    def _needs(self) -> dict[str, set[str]]:
+        """The objects of the document on which each depends, by links and expressions."""
         document, labels = self.document, {held["label"]: name for name, held in self.now.items()}
-        waiting, found = [item.name for item in start if item.document is document], set[str]()
-        while waiting:
-            name = waiting.pop()
-            if name in found or name not in document.items:
-                continue
-            found.add(name)
-            waiting += [link for key in document.keys(name) if key not in _CONTAINING for link in document.links(name, key)]
+        found: dict[str, set[str]] = {}
+        for name in document.items:
+            found[name] = {link for key in document.keys(name) if key not in _CONTAINING for link in document.links(name, key)}
             for text in self.now.get(name, {"expressions": {}})["expressions"].values():
-                waiting += [
-                    label if label in document.items else labels.get(label, "")
-                    for label in _NAMED.findall(text.replace("<<", "").replace(">>", ""))
-                ]
+                named = _NAMED.findall(text.replace("<<", "").replace(">>", ""))
+                found[name].update(label if label in document.items else labels.get(label, "") for label in named)
         return found
 
-    def follows(self, key: str, used: set[str]) -> bool:
-        """Return whether an expression of an object in use names a value of a VarSet."""
-        word = re.compile(rf"\b{re.escape(key)}\b")
-        return any(word.search(text) for name in used for text in self.now.get(name, {"expressions": {}})["expressions"].values())
+    def used(self) -> set[str]:
+        """Return the parts, their shapes and connectors, the joints, and the objects of the document on which these depend."""
+        start = [*self.members, *self.joint_items()]
+        for container in dict.fromkeys(self.library.container(item) for item in self.members):
+            start += [shape for shape, _ in self._shapes_of(container)]
+            start += [member for member in self.library.members(container) if member.text("ArticadConnector")]
+        names = [item.name for item in start if item.document is self.document]
+        return {name for name in _closure(names, self._needs) if name in self.document.items}
+
+    def words(self, used: set[str]) -> set[str]:
+        """Return the words of the expressions of objects in use."""
+        texts = (text for name in used for text in self.now.get(name, {"expressions": {}})["expressions"].values())
+        return {word for text in texts for word in re.findall(r"\w+", text)}
 
     def _misshapen(self, name: str, message: str, hint: str) -> None:
         self._said.add(name)
@@ -505,11 +538,15 @@ class _Model:
         solid = self.solid(part)
         if solid is None or solid.mesh.face is None:
             return False
-        for number, point, normal in planar_faces(solid.mesh.vertices, solid.mesh.triangles, solid.mesh.face):
-            if element == f"Face{number}":
-                off = float(np.dot(point - frame.translation, normal))
-                return abs(off) < STANDS_MM and float(np.linalg.norm(np.cross(normal, frame.rotation[:, 2]))) < STANDS_RAD
-        return False
+        container = self.library.container(self.parts[part])
+        if container not in self._planes:
+            faces = planar_faces(solid.mesh.vertices, solid.mesh.triangles, solid.mesh.face)
+            self._planes[container] = {f"Face{number}": (point, normal) for number, point, normal in faces}
+        if element not in self._planes[container]:
+            return False
+        point, normal = self._planes[container][element]
+        off = float(np.dot(point - frame.translation, normal))
+        return abs(off) < STANDS_MM and float(np.linalg.norm(np.cross(normal, frame.rotation[:, 2]))) < STANDS_RAD
 
     def restricted(self, joints: list[Joint], rows: list[tuple[FreeCADObject, str]]) -> list[Joint]:
         """Return the joints, restricted by FreeCAD's joints that restrict others.
@@ -644,7 +681,7 @@ class _Model:
     def loose(self, joints: list[Joint]) -> list[Joint]:
         """Return joints to the ground for parts that no joint connects to it: fixed ones for grounded parts, free ones and a finding for others."""
         near, grounded = _neighbours(joints), set(self.grounded)
-        reached, made = _reached(self.ground, near), []
+        reached, made = _closure([self.ground], near), []
         taken = {joint.name for joint in joints}
         for name in self.parts:
             if name in reached:
@@ -668,7 +705,7 @@ class _Model:
                     rest=() if held else tuple(map(float, T.data)),
                 )
             )
-            reached |= _reached(name, near)
+            reached |= _closure([name], near)
             if held:
                 continue
             message = f"No joint connects part {name!r} to the grounded part. It is loose and has a free joint."
@@ -966,8 +1003,9 @@ def _mass_now(
 def _edit_findings(model: _Model) -> Iterator[Finding]:
     """Yield each edit as a finding: taken over, or not."""
     used = model.used()
+    words = model.words(used)
     for edit in model.edits:
-        taken = _taken(edit, model, used)
+        taken = _taken(edit, used, words)
         yield Finding(
             code="I_FREECAD_EDIT" if taken else "W_FREECAD_EDIT",
             where=f"objects.{edit.object}",
@@ -982,13 +1020,13 @@ _OTHER_MASS = "Masses follow the property ArticadMaterial of the part: set it to
 _HINTS = dict.fromkeys(("ShapeMaterial", "ArticadDensity", "ArticadMass"), _OTHER_MASS)
 
 
-def _taken(edit: Edit, model: _Model, used: set[str]) -> bool:
+def _taken(edit: Edit, used: set[str], words: set[str]) -> bool:
     """Return whether an edit is in the assembly that was read.
 
     Args:
         edit: The edit.
-        model: The document.
         used: Objects on which parts and joints of the assembly depend.
+        words: Words of their expressions.
     """
     if edit.kind in ("joint", "limit", "ground", "connector", "group", "material"):
         return True
@@ -999,7 +1037,7 @@ def _taken(edit: Edit, model: _Model, used: set[str]) -> bool:
     if edit.kind == "deleted":
         return True
     if edit.kind in ("parameter", "dimension", "expression") and edit.type == "App::VarSet":
-        return model.follows(edit.key, used)
+        return edit.key in words
     return edit.kind != "note" and edit.key not in ("ArticadMass", "ArticadDensity") and edit.object in used
 
 
@@ -1025,22 +1063,23 @@ def _elsewhere(model: _Model, made: Assembly) -> Iterator[Finding]:
             )
 
 
+def _closure(start: Iterable[str], links: Mapping[str, Iterable[str]]) -> set[str]:
+    """Return names and all that their links lead to."""
+    found, waiting = set[str](), list(start)
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found.add(name)
+            waiting += links.get(name, ())
+    return found
+
+
 def _neighbours(joints: Iterable[Joint]) -> dict[str, list[str]]:
     """Return the parts that joints connect to each part."""
     found: dict[str, list[str]] = {}
     for joint in joints:
         found.setdefault(joint.parent, []).append(joint.child)
         found.setdefault(joint.child, []).append(joint.parent)
-    return found
-
-
-def _reached(start: str, neighbours: Mapping[str, Sequence[str]]) -> set[str]:
-    """Return the parts that joints connect to one, directly or not."""
-    found, waiting = {start}, [start]
-    while waiting:
-        new = [name for name in neighbours.get(waiting.pop(), ()) if name not in found]
-        found.update(new)
-        waiting += new
     return found
 
 

@@ -6,7 +6,7 @@ Nothing outside the folder that the caller names is read. A link to a missing fi
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -24,6 +24,8 @@ MAX_ALL_XML = 128 * 2**20  # bytes of Document.xml and GuiDocument.xml in a docu
 MAX_ALL_BYTES = 512 * 2**20  # of their files
 MAX_DEPTH = 50  # of groups within groups and links to links
 MAX_MEMBERS = 2 * MAX_LINKS  # of an assembly, a part or a folder, those of all groups in it, each counted as often as it is shown
+MAX_LISTED = 300_000  # members of all groups together: a folder counts in each group that shows it
+MAX_WALKED = 100_000  # groups and shapes of all parts together: what several parts show counts in each
 
 IDENTITY = SE3.identity()
 _GROUPS = ("App::Part", "App::DocumentObjectGroup", "Assembly::AssemblyObject", "Assembly::AssemblyLink")
@@ -74,6 +76,7 @@ class FreeCADDocument:
         """Find the objects and their properties in the XML; again after documents were taken."""
         self.types = {item.get("name", ""): item.get("type", "") for item in self.root.iterfind("Objects/Object")}
         self.items = {item.get("name", ""): item for item in self.root.iterfind("ObjectData/Object")}
+        self._links: dict[tuple[str, str], tuple[str, ...]] = {}  # once they were asked for
         self._properties = {
             name: {row.get("name"): row for row in item.iterfind("Properties/Property")} for name, item in self.items.items()
         }
@@ -159,12 +162,13 @@ class FreeCADDocument:
         options = [option.get("value") for option in row.iterfind(".//Enum")]
         return str(options[index]) if 0 <= index < len(options) else ""
 
-    def links(self, name: str, key: str) -> list[str]:
+    def links(self, name: str, key: str) -> Sequence[str]:
         """Return the objects that a property links to."""
-        row = self._properties.get(name, {}).get(key)
-        if row is None:
-            return []
-        return [found.get("value") or found.get("name") or "" for found in row.iter() if found.tag in ("Link", "XLink")]
+        if (name, key) not in self._links:
+            row = self._properties.get(name, {}).get(key)
+            found = () if row is None else (entry for entry in row.iter() if entry.tag in ("Link", "XLink"))
+            self._links[name, key] = tuple(entry.get("value") or entry.get("name") or "" for entry in found)
+        return self._links[name, key]
 
     def is_shape(self, name: str) -> bool:
         """Return whether an object is a body or a solid of the Part workbench, such as a box or a cut."""
@@ -291,6 +295,9 @@ class LinkedDocuments:
     def __init__(self, path: Path, root: Path | None) -> None:
         self._root = root
         self._sizes = [0, 0, 0]
+        self._members: dict[FreeCADObject, list[FreeCADObject]] = {}  # of groups, once they were asked for
+        self._shown = 0  # members of them all
+        self._walked = 0  # groups and shapes that were shown
         self.main = self._opened(path)
         self._read = {path.resolve(): self.main}
         here = path.resolve().parent
@@ -352,7 +359,20 @@ class LinkedDocuments:
         raise unreadable(item.document.path, item.name, "Its links form a cycle.")
 
     def members(self, item: FreeCADObject) -> list[FreeCADObject]:
-        """Return the members of a group, those of folders in it included."""
+        """Return the members of a group, those of folders in it included.
+
+        Raises:
+            ReadError: If it has too many, or all groups together, which may show one folder each.
+        """
+        if item not in self._members:
+            self._members[item] = self._listed(item)
+            self._shown += len(self._members[item])
+            if self._shown > MAX_LISTED:
+                raise unreadable(item.document.path, item.name, f"All groups together have more than {MAX_LISTED} members.")
+        return self._members[item]
+
+    def _listed(self, item: FreeCADObject) -> list[FreeCADObject]:
+        """Return the members of a group, found anew."""
         found, seen = [], 0
         waiting = [(name, 0) for name in reversed(item.document.links(item.name, "Group"))]
         while waiting:
@@ -411,6 +431,9 @@ class LinkedDocuments:
             raise unreadable(item.document.path, item.name, "Its groups and links are nested too deep.")
         shown = shown or count()
         _require_few(shown, item)
+        self._walked += 1
+        if self._walked > MAX_WALKED:
+            raise unreadable(item.document.path, item.name, f"All parts together show more than {MAX_WALKED} groups and shapes.")
         if item.is_shape or item.type == "Mesh::Feature":
             yield item, T @ item.placement.inverse() if item.is_shape else T  # B-rep is stored in the frame of the object's group
             return

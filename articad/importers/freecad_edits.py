@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -62,7 +63,7 @@ class Edit:
         if self.kind == "group":
             gone, come = (
                 [member for member in one if member not in other]
-                for one, other in ((self.before or [], self.now or []), (self.now or [], self.before or []))
+                for one, other in ((self.before or [], set(self.now or ())), (self.now or [], set(self.before or ())))
             )
             return f"{named}: {', '.join(gone) or 'nothing'} left the group, {', '.join(come) or 'nothing'} joined it."
         if self.kind == "label":
@@ -94,6 +95,7 @@ def _changes(name: str, before: Any, now: Any, staying: set[str]) -> Iterator[Ed
     if now["label"] != label:
         yield edit("label", "Label", label, now["label"])
     bound = {path: text for path, text in before["expressions"].items() if now["expressions"].get(path) == text}
+    roots = _roots(bound)
     for path in sorted({*before["expressions"], *now["expressions"]}):
         if path not in bound:
             yield edit("expression", path, before["expressions"].get(path), now["expressions"].get(path))
@@ -101,15 +103,26 @@ def _changes(name: str, before: Any, now: Any, staying: set[str]) -> Iterator[Ed
         old, new = before["values"].get(key), now["values"].get(key)
         if key == "Group":  # what was added or deleted is an edit of its own
             old, new = ([member for member in held or () if member in staying] for held in (old, new))
-        if (
-            _same(old, new)
-            or any(key == path or key.startswith(f"{path}.") for path in bound)
-            or (key in now["expressions"] and key not in bound)
-        ):
+        if _same(old, new) or _is_within(key, roots) or (key in now["expressions"] and key not in bound):
             continue
         if (old is None or new is None) and not (kind == "App::VarSet" or key.startswith(("Constraints.", "cells."))):
             continue  # a property that one version of FreeCAD has and another has not
         yield edit(_kind(name, kind, key), key, old, new)
+
+
+def _roots(paths: Iterable[str]) -> list[str]:
+    """Return paths in order, each with a dot at its end, without those that begin with another one."""
+    found: list[str] = []
+    for path in sorted(f"{path}." for path in paths):
+        if not found or not path.startswith(found[-1]):
+            found.append(path)
+    return found
+
+
+def _is_within(key: str, roots: Sequence[str]) -> bool:
+    """Return whether one of the paths of `_roots` is a key or leads to it: none stands between it and the key."""
+    place = bisect_right(roots, f"{key}.")
+    return place > 0 and f"{key}.".startswith(roots[place - 1])
 
 
 def _kind(name: str, kind: str, key: str) -> Kind:

@@ -16,11 +16,13 @@ from articad.export.collisions import _names_of_joints
 from articad.export.contacts import ContactSearch
 from articad.export.freecad import write_freecad_alone
 from articad.export.hulls import rigid_groups, same_group_pairs
+from articad.export.names import Names
 from articad.export.plan import _Names
 from articad.formats import NAMED
 from articad.interference.boxes import meeting_boxes
 from articad.kinematics.joints import JointType
 from tests.chains import chain
+from tests.growth import MOST_A_PAIR, Watched, bytecodes_a_pair
 
 FEW, MANY = 40, 160
 MOST_PER_PART = 1.3  # calls per part of the long chain to those of the short one
@@ -56,6 +58,17 @@ def test_an_export_calls_as_much_per_part_of_a_long_chain_as_of_a_short_one(name
     write(resting(3))  # imports and caches
     few, many = (calls_of(lambda count=count: write(resting(count))) for count in (FEW, MANY))  # type: ignore[misc]
     assert many / MANY <= MOST_PER_PART * few / FEW
+
+
+def test_names_are_sought_in_no_list_of_all_parts_when_freecad_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    claim = Names.claim
+    monkeypatch.setattr(Names, "claim", lambda *given: Watched(claim(*given)))
+
+    def writing(size: int) -> Callable[[], Any]:
+        assembly = resting(size)
+        return lambda: write_freecad_alone(assembly)
+
+    assert bytecodes_a_pair(writing, 6) < MOST_A_PAIR
 
 
 @pytest.mark.parametrize("name", WRITERS)

@@ -1,38 +1,39 @@
 """The work to read a FreeCAD document grows as its objects do, counted in bytecodes, never in seconds.
 
-Counts at three sizes n, 2n, 3n of work that is linear have no second difference; that of work c·n² is 2·c·n². Names compare themselves by
-bytecodes, too, so that a search in a list, which is one bytecode otherwise, counts each of its comparisons.
+Names compare themselves by bytecodes, too, so that searches in lists are counted.
 """
 
 from __future__ import annotations
 
-import sys
+import io
+import re
+import zipfile
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from articad.assembly import Assembly
+from articad.errors import ReadError
+from articad.export.freecad import write_freecad_alone
+from articad.geometry.part import Part, Solid
+from articad.geometry.shapes import box
 from articad.importers import freecad
 from articad.importers.freecad import read_freecad
 from articad.importers.freecad_document import FreeCADDocument
+from articad.importers.freecad_edits import Edit, _is_within, _roots, edits
+from tests.chains import chain
+from tests.growth import MOST_A_PAIR, Watched, bytecodes_a_pair
 from tests.hostile_files import archive
 
 STEP, FEW = 12, 4  # FEW of what costs much each
-MOST_A_PAIR = 0.25  # bytecodes for each pair of objects: one comparison of two names is more than ten
 
 Objects = dict[str, tuple[str, str]]
 """Type and properties by name."""
-
-
-class Watched(str):
-    """A name whose comparisons are counted."""
-
-    __hash__ = str.__hash__
-    __slots__ = ()
-
-    def __eq__(self, other: object) -> bool:
-        return str.__eq__(self, other)
 
 
 def text(key: str, value: str) -> str:
@@ -78,9 +79,9 @@ def islands(count: int) -> Objects:
 
 
 def linked(count: int) -> Objects:
-    """Links to one part that has no shape."""
+    """Links to one part, whose solids are more the more links there are."""
     shown = links("LinkedObject", ["p0"])
-    return loose(1) | {f"l{place}": ("App::Link", text("Label", "same") + shown) for place in range(count)}
+    return shapes(count) | {f"l{place}": ("App::Link", text("Label", "same") + shown) for place in range(count)}
 
 
 def shapes(count: int) -> Objects:
@@ -107,14 +108,27 @@ def restricted(count: int) -> Objects:
     return loose(count + 1) | chain | {f"d{place}": joint("Distance", f"p{place}", f"p{place + 1}") for place in range(count)}
 
 
+def nested(count: int) -> Objects:
+    """References to links whose target is an assembly of many parts."""
+    inner = {"p0": ("App::Part", ""), "s": ("Assembly::AssemblyLink", links("Group", [f"i{place}" for place in range(count)]))}
+    inner |= {f"i{place}": ("App::Part", "") for place in range(count)}
+    return inner | {f"j{place}": joint("Fixed", "p0", "s") for place in range(count)}
+
+
+def folders(count: int) -> Objects:
+    """Parts with a folder each."""
+    made = {f"p{place}": ("App::Part", links("Group", [f"f{place}"])) for place in range(count)}
+    return made | {f"f{place}": ("App::DocumentObjectGroup", links("Group", [f"s{place}"])) for place in range(count)}
+
+
 KINDS: dict[str, Callable[[int], Objects]] = {
-    made.__name__: made for made in (loose, grounded, apart, islands, linked, shapes, star, restricted)
+    made.__name__: made for made in (loose, grounded, apart, islands, linked, nested, folders, shapes, star, restricted)
 }
 
 
 def written(path: Path, objects: Objects) -> Path:
     """Write a document whose assembly shows all objects but the shapes of a part, with a colour of each."""
-    held = [name for name, (kind, _) in objects.items() if kind != "Part::Feature"]
+    held = [name for name, (kind, _) in objects.items() if kind not in ("Part::Feature", "App::DocumentObjectGroup") and name[0] != "i"]
     ground = links("ObjectToGround", ["p0"])
     objects = {"A": ("Assembly::AssemblyObject", links("Group", [*held, "G"])), "G": ("App::FeaturePython", ground)} | objects
     rows = "".join(f'<Object name="{name}" type="{kind}"/>' for name, (kind, _) in objects.items())
@@ -130,24 +144,6 @@ def written(path: Path, objects: Objects) -> Path:
     return path
 
 
-def bytecodes_of(work: Callable[[], Any]) -> int:
-    """Return how many bytecodes of Python a piece of work runs."""
-    count = 0
-
-    def seen(frame: Any, event: str, _argument: object) -> Any:
-        nonlocal count
-        frame.f_trace_opcodes, frame.f_trace_lines = True, False
-        count += event == "opcode"
-        return seen
-
-    sys.settrace(seen)
-    try:
-        work()
-    finally:
-        sys.settrace(None)
-    return count
-
-
 @pytest.fixture
 def watched(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have comparisons of the names of objects, parts and joints counted."""
@@ -159,8 +155,109 @@ def watched(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("watched")
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_document_is_read_in_linear_work(kind: str, tmp_path: Path) -> None:
-    step = FEW if kind == "restricted" else STEP
-    files = [written(tmp_path / f"{times}.FCStd", KINDS[kind](times * step)) for times in (1, 2, 3)]
-    read_freecad(files[0])  # imports and caches
-    one, two, three = (bytecodes_of(lambda file=file: read_freecad(file)) for file in files)  # type: ignore[misc]
-    assert (three - 2 * two + one) / (2 * step**2) < MOST_A_PAIR
+    def reading(size: int) -> Callable[[], Any]:
+        path = written(tmp_path / f"{size}.FCStd", KINDS[kind](size))
+        return lambda: read_freecad(path)
+
+    assert bytecodes_a_pair(reading, FEW if kind == "restricted" else STEP) < MOST_A_PAIR
+
+
+BOUNDED = {
+    "articad.importers.freecad.MAX_CONNECTORS": (
+        {"p0": ("App::Part", links("Group", ["c", "d"]))}
+        | {name: ("PartDesign::CoordinateSystem", text("ArticadConnector", name)) for name in ("c", "d")}
+        | {f"l{place}": ("App::Link", links("LinkedObject", ["p0"])) for place in range(50)},
+        "more than 80 connectors",
+    ),
+    "articad.importers.freecad_document.MAX_LISTED": (
+        {f"p{place}": ("App::Part", links("Group", ["f"])) for place in range(10)}
+        | {"f": ("App::DocumentObjectGroup", links("Group", ["s"] * 9)), "s": ("App::Part", "")},
+        "more than 80 members",
+    ),
+    "articad.importers.freecad_document.MAX_WALKED": (
+        {f"p{place}": ("App::Part", links("Group", ["i"])) for place in range(10)}
+        | {f"i{place}": ("App::Part", "") for place in range(9)}
+        | {"i": ("App::Part", links("Group", [f"i{place}" for place in range(9)]))},
+        "more than 80 groups and shapes",
+    ),
+}
+
+
+@pytest.mark.parametrize("bound", BOUNDED)
+def test_what_copies_and_shared_folders_show_is_counted(bound: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    objects, reason = BOUNDED[bound]
+    path = written(tmp_path / "a.FCStd", objects)
+    assert read_freecad(path).parts
+    monkeypatch.setattr(bound, 80)
+    with pytest.raises(ReadError, match=reason):
+        read_freecad(path)
+
+
+def relabelled(count: int) -> bytes:
+    """Return a chain that articad wrote, in which each object has another label, and no part has its shape."""
+    (content,) = write_freecad_alone(chain(count)).files.values()
+    with zipfile.ZipFile(io.BytesIO(content)) as entries:
+        text = re.sub(r'file="[^"]+"', 'file=""', entries.read("Document.xml").decode())
+    return archive(Document_xml=re.sub(r'(name="Label".*?<String value="[^"]*)', r"\1 again", text, flags=re.DOTALL).encode())
+
+
+def reshaped(count: int) -> bytes:
+    """Return a chain that articad wrote, in which each part has another shape, and each joint another limit."""
+    made = chain(count)
+    drawn = replace(made, parts={name: replace(part, solid=None) for name, part in made.parts.items()})
+    (content,) = write_freecad_alone(drawn).files.values()
+    block = Part.from_solid("block", Solid.from_mesh(box(7.0, 6.0, 5.0), deflection=0.01))
+    (other,) = write_freecad_alone(Assembly.from_parts("block", parts=[block], joints=[], ground="block")).files.values()
+    with zipfile.ZipFile(io.BytesIO(content)) as entries:
+        text = entries.read("Document.xml").decode()
+    assert text.count("-1.1459") == count - 1
+    with zipfile.ZipFile(io.BytesIO(other)) as entries:
+        shapes = {f"link{number}_body.bms": entries.read("block_body.bms") for number in range(count)}
+    return archive(Document_xml=text.replace("-1.1459", "-1.2459").encode(), **shapes)
+
+
+@pytest.mark.usefixtures("watched")
+@pytest.mark.parametrize("made", [relabelled, reshaped])
+def test_edits_of_what_articad_wrote_are_found_in_linear_work(made: Callable[[int], bytes], tmp_path: Path) -> None:
+    said = {"relabelled": "is now labelled", "reshaped": "is not the one that articad wrote"}[made.__name__]
+
+    def reading(size: int) -> Callable[[], Any]:
+        path = tmp_path / f"{size}.FCStd"
+        path.write_bytes(made(size))
+        assert len([finding for finding in read_freecad(path).findings if said in finding.message]) >= size
+        return lambda: read_freecad(path)
+
+    assert bytecodes_a_pair(reading, FEW) < MOST_A_PAIR
+
+
+def test_values_that_follow_expressions_are_told_from_others_in_linear_work() -> None:
+    def content(count: int, value: float) -> dict[str, Any]:
+        places = range(count)
+        expressions = {f"Constraints.a{place}": "1" for place in places}
+        values = {f"Constraints.{letter}{place}.between": value for place in places for letter in "ab"}
+        return {"s": {"type": "Sketcher::SketchObject", "label": "s", "expressions": expressions, "values": values}}
+
+    def comparing(size: int) -> Callable[[], Any]:
+        before, now = content(size, 1.0), content(size, 2.0)
+        assert {edit.key for edit in edits(before, now)} == {f"Constraints.b{place}.between" for place in range(size)}
+        return lambda: edits(before, now)
+
+    assert bytecodes_a_pair(comparing, STEP) < MOST_A_PAIR
+
+
+def test_members_that_left_a_group_are_named_in_linear_work() -> None:
+    def naming(size: int) -> Callable[[], Any]:
+        names = [Watched(f"p{place}") for place in range(size)]
+        edit = Edit("group", "A", "A", "App::Part", "Group", names, names[::-2])
+        assert str(edit).count(",") == size // 2
+        return edit.__str__
+
+    assert bytecodes_a_pair(naming, STEP) < MOST_A_PAIR
+
+
+PATHS = st.lists(st.sampled_from(["a", "b", "aa", "a.b", "a.b.c", "a-b", "b.a", "a.c"]), max_size=6)
+
+
+@given(PATHS, st.sampled_from(["a", "a.b", "a.bb", "a.b.c", "a.c.d", "ab", "aa.b", "b", "a-b", "a-b.c", "b.b", "c"]))
+def test_a_key_is_within_a_path_if_it_begins_with_it(paths: list[str], key: str) -> None:
+    assert _is_within(key, _roots(paths)) == any(key == path or key.startswith(f"{path}.") for path in paths)
