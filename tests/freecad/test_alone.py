@@ -128,9 +128,10 @@ def test_a_part_that_is_only_a_mesh_is_a_closed_mesh_in_freecad() -> None:
 
 
 def test_without_freecad_documents_are_written_and_what_is_lost_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    made = assembly("wardrobe")  # parts are built with the programs on the path
     for variable in ("ARTICAD_FREECAD", "XDG_DATA_HOME", "PATH"):
         monkeypatch.setenv(variable, str(tmp_path))
-    bundle = write_freecad(assembly("wardrobe"))
+    bundle = write_freecad(made)
     assert bundle.findings.ok
     assert "articad install freecad" in next(iter(bundle.findings)).hint
     assert bundle.files[bundle.main] == content("wardrobe")  # each time the same bytes
