@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import re
+from dataclasses import replace
 from typing import Any, Final
 
 import pytest
 
+from articad.assembly import Assembly
+from articad.kinematics import Mechanism
 from articad_bench.function_checks import Folds
 from articad_bench.reference import reference
 from articad_bench.subject import Subject
@@ -107,3 +111,29 @@ def test_the_nearest_cheap_answer_fails_where_it_is_cheap(name: str) -> None:
 
     failed = [check for check in task.checks if check.kind == kind and not check.judge(cheap).ok]
     assert failed
+
+
+def resting(assembly: Assembly, joint: str, value: float) -> Assembly:
+    """Return an assembly of which one joint rests elsewhere."""
+    old = assembly.mechanism
+    joints = tuple(replace(each, rest=(value,)) if each.name == joint else each for each in assembly.joints)
+    return replace(assembly, mechanism=Mechanism(old.parts, old.ground, joints, old.couplings, T_ground=old.T_ground))
+
+
+SUPPORTED = {"brief_desk_wall_folding": ("swing", -math.pi / 2), "brief_trolley_leaf": ("draw", -200.0)}
+"""The joint of the support, and where it is put away."""
+
+
+@pytest.mark.slow
+@pytest.mark.soak
+@pytest.mark.parametrize("name", SUPPORTED)
+def test_a_leaf_is_proven_to_drop_once_its_support_is_away_and_not_before(name: str) -> None:
+    """It is a soak test because the whole product is built. The support moves under the leaf; the leaf moves without it."""
+    ((folder, task),) = tasks_in(TASKS, names=[name])
+    support, away = SUPPORTED[name]
+    drawn = reference(folder, task)
+
+    assert drawn.certify([support], pairs=False, budget=300).ok
+    assert resting(drawn, support, away).certify(["drop"], pairs=False, budget=300).ok
+    refused = drawn.certify(["drop"], pairs=False, budget=300)
+    assert refused.findings.codes == ("E_MOTION_COLLISION",)
