@@ -53,10 +53,10 @@ def recorded() -> dict[str, dict[str, str]]:
     return found
 
 
-def record(suite: str, task: str) -> None:
-    """Add a task that has passed."""
+def record(suite: str, task: str, digest: str) -> None:
+    """Add a task that has passed, with the digest of its folder when it was read."""
     rows = recorded()
-    rows.setdefault(suite, {})[task] = state(TASKS / task)
+    rows.setdefault(suite, {})[task] = digest
     text = json.dumps({name: dict(sorted(row.items())) for name, row in sorted(rows.items())}, indent=1)
     FILE.write_text(text + "\n", encoding="utf-8")
 

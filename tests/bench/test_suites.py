@@ -31,7 +31,7 @@ def test_a_task_that_has_changed_since_has_to_pass_again(tmp_path: Path, monkeyp
     found = suites.suite_of("test_one_wrong_module_is_refused", {"name": "bracket_corner", "answer": "beside"})
     assert found == ("nearest cheap answers: beside", "bracket_corner")
 
-    suites.record(*found)
+    suites.record(*found, suites.state(tmp_path / "bracket_corner"))
 
     assert suites.told().splitlines()[:2] == [
         "nearest cheap answers: beside: 1 of 1 tasks, 0 of 0 separating ones",
