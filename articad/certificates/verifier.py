@@ -179,7 +179,9 @@ def radii(flat: Any) -> tuple[Any, Any]:
     nearest = flat + np.clip(along, 0, 1)[..., None] * edge
     least = np.sqrt(functools.reduce(np.minimum, dot(nearest, nearest).T))
     over = functools.reduce(np.minimum, dot(cross(n[:, None], edge), -flat).T) > 0  # 0 lies above the triangle, or below it
-    height = np.abs(dot(n, flat[:, 0])) / np.maximum(np.sqrt(dot(n, n)), 1e-300)
+    size, longest = np.sqrt(dot(n, n)), np.sqrt(functools.reduce(np.maximum, dot(edge, edge).T))
+    # Seen along it, a wall is a line, and rounding decides what lies above it: but no point is farther from its edges than it is high.
+    height = np.maximum(np.abs(dot(n, flat[:, 0])) / np.maximum(size, 1e-300), least - size / np.maximum(longest, 1e-300))
     return np.where(over, np.minimum(least, height), least), np.sqrt(functools.reduce(np.maximum, dot(flat, flat).T))
 
 

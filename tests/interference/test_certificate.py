@@ -817,6 +817,23 @@ def test_the_certificate_is_the_same_bytes_twice(honest: Certificate) -> None:
     assert again.mesh_files() == honest.mesh_files()
 
 
+@pytest.mark.parametrize("angle", [np.pi, -np.pi / 2, 2 * np.pi])
+@pytest.mark.parametrize("turn", [SE3.rot_x, SE3.rot_y])
+def test_a_wall_along_an_axis_is_for_the_checker_as_far_from_it_as_its_edges(turn: Callable[[float], SE3], angle: float) -> None:
+    """Seen along the axis each triangle is a line, which rounding of a turned frame may take for a triangle with the axis before it."""
+    rng = np.random.default_rng(0)
+    away, sides, along = rng.uniform(1, 10, (2000, 1)), rng.uniform(-100, 100, (2000, 3)), rng.uniform(-100, 100, (2000, 3))
+    ends = np.sort(sides, axis=1)
+    axis = turn(angle).rotation.T @ np.round(turn(angle).rotation)[:, 2]  # z, up to rounding
+    walls = np.stack([sides, np.broadcast_to(away, sides.shape), along], axis=2)
+
+    least, most = verifier.radii(walls @ verifier.plane(axis))
+
+    nearest = np.clip(0.0, ends[:, 0], ends[:, 2])
+    np.testing.assert_allclose(least, np.hypot(away[:, 0], nearest), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(most, np.hypot(away[:, 0], np.abs(ends).max(axis=1)), rtol=0, atol=1e-9)
+
+
 MOST_LINES = 640  # of code: what a person can read
 
 
