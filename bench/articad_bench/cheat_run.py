@@ -54,6 +54,7 @@ _SOURCES: Final = (
     "wanted.py",
     "solids.py",
     "subject.py",
+    "heading.py",
     "cheats.py",
     "staged_cheats.py",
 )
