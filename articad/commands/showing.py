@@ -39,9 +39,11 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.runs.record import assembly_of, documents_of, record_page
     from articad.runs.run import Run
 
+    claims = False
     if (Path(options.target) / "request.json").is_file():
         with Run.view(options.target) as run, terminal.progress("Reading") as tell:
             assembly, documents = assembly_of(run, progress=tell), documents_of(run)
+        claims = documents.certificate is not None
         with terminal.progress("Writing"):
             if options.out is None:
                 with Run.open(options.target) as run:
@@ -56,6 +58,10 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
         page = Path(options.out or Path(tempfile.mkdtemp(prefix="articad-")) / f"{file_name(assembly.name)}.html")
         scratch.write(page, text.encode())
     terminal.say(str(page))
+    if claims:
+        terminal.say(
+            f"The page repeats what the run's certificate states. To check the certificate: articad verify-certificate {options.target}"
+        )
     if options.browser and not webbrowser.open(page.resolve().as_uri()):
         terminal.say("No browser could be started; open the file yourself.")
     return {"schema": "articad.page/1", "ok": True, "file": str(page), "findings": []}

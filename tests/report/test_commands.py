@@ -122,6 +122,19 @@ def test_a_clean_picture_has_its_own_size_and_no_background(tmp_path: Path, caps
     assert "An animation has a background" in capsys.readouterr().err
 
 
+def test_who_opens_a_run_reads_that_its_certificate_is_repeated_and_how_to_check_it(
+    starter: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for how, is_said in (("rest", False), ("certified", True)):
+        run = tmp_path / how
+        assert cli.main(["build", str(starter), "--out", str(run), f"--verify={how}", "-q"]) == 0
+        capsys.readouterr()
+        assert cli.main(["show", str(run), "--no-browser"]) == 0
+        assert (f"articad verify-certificate {run}" in capsys.readouterr().out) is is_said
+        if is_said:
+            assert cli.main(["verify-certificate", str(run)]) == 0
+
+
 def test_a_run_keeps_its_page_which_show_makes_again(starter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     plan = AssemblyPlan.load(starter)
     with Run.create(RunRequest(prompt="my_box", options={"task": "build"}), out=tmp_path / "run") as run:
