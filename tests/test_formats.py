@@ -37,9 +37,11 @@ def test_what_is_not_read_is_refused_with_what_to_do(tmp_path: Path) -> None:
     for endings, text in ADVICE.items():
         for ending in endings:
             assert ending not in set(readable())
+            (tmp_path / f"a{ending}").touch()
             with pytest.raises(ReadError) as refused:
                 read(tmp_path / f"a{ending}")
             assert text in {finding.hint for finding in refused.value.findings}, ending
+    (tmp_path / "a.unknown").touch()
     with pytest.raises(ReadError, match="not one of"):
         read(tmp_path / "a.unknown")
 

@@ -609,22 +609,9 @@ class _Model:
             else:
                 raise self.refused(item, kind)
         made = self.restricted(made, restricting)
-        made, between = self.threaded(made, stated)
+        made, runs = threaded(made, [told for _, told in stated], self.poses)
         motions = PartMotions(made, self.poses)
-        return made, [self.coupled(item, told, motions) for item, told in between]
-
-    def threaded(
-        self, joints: list[Joint], stated: list[tuple[FreeCADObject, Stated]]
-    ) -> tuple[list[Joint], list[tuple[FreeCADObject, Stated]]]:
-        """Return the joints, with screws where a thread runs on a cylindrical joint, and the other couplings."""
-        between = []
-        for item, told in stated:
-            made = threaded(joints, told, self.poses)
-            if made is None:
-                between.append((item, told))
-            else:
-                joints = made
-        return joints, between
+        return made, [self.coupled(item, told, motions) for (item, told), on_joint in zip(stated, runs, strict=True) if not on_joint]
 
     def coupled(self, item: FreeCADObject, told: Stated, motions: PartMotions) -> Coupling:
         """Return the coupling that a joint of FreeCAD's means, or refuse the joint by its name."""

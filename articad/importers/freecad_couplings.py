@@ -110,21 +110,22 @@ def _on_line(directions: FloatArray, points: FloatArray, z: FloatArray, point: F
     return on
 
 
-def threaded(joints: Sequence[Joint], stated: Stated, poses: Mapping[str, SE3]) -> list[Joint] | None:
-    """Return the joints with a screw in place of the cylindrical joint that a thread runs on; None if there is no such joint.
+def threaded(joints: Sequence[Joint], stated: Sequence[Stated], poses: Mapping[str, SE3]) -> tuple[list[Joint], list[bool]]:
+    """Return the joints, with a screw in place of each cylindrical joint that a thread runs on, and which of the couplings are such threads.
 
-    The thread must be between the two parts of the joint, about its axis.
+    A thread runs on a joint about its axis between the same two parts, if that is the only cylindrical joint between them.
     """
-    places = [
-        place
-        for place, joint in enumerate(joints)
-        if joint.type is JointType.CYLINDRICAL and {joint.parent, joint.child} == set(stated.parts) and _runs_on(joint, stated, poses)
-    ]
-    if stated.kind != "Screw" or len(places) != 1 or _size_of(stated) is not None:
-        return None
-    made = list(joints)
-    made[places[0]] = _screw(joints[places[0]], stated.distance)
-    return made
+    made, places = list(joints), dict[frozenset[str], list[int]]()
+    for place, joint in enumerate(joints):
+        if joint.type is JointType.CYLINDRICAL:
+            places.setdefault(frozenset((joint.parent, joint.child)), []).append(place)
+    runs = []
+    for told in stated:
+        near = places.get(frozenset(told.parts), []) if told.kind == "Screw" and _size_of(told) is None else []
+        runs.append(len(near) == 1 and made[near[0]].type is JointType.CYLINDRICAL and _runs_on(made[near[0]], told, poses))
+        if runs[-1]:
+            made[near[0]] = _screw(made[near[0]], told.distance)
+    return made, runs
 
 
 def _runs_on(joint: Joint, stated: Stated, poses: Mapping[str, SE3]) -> bool:

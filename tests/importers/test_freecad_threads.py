@@ -101,9 +101,10 @@ def test_the_limits_of_a_slide_bound_the_turn_of_its_thread(lead: float) -> None
     rod = declare.cylindrical("rod", plate["on"], bolt["on"], travel=(-10.0, 20.0), angle=(-20.0, 12.0), rest=(2.0, 0.5))
     stated = Stated("thread", "Screw", ("plate", "bolt"), (SE3.identity(), SE3.identity()), lead, 0.0)
 
-    (read,) = threaded([rod], stated, {"plate": SE3.identity()}) or ()
+    others = [replace(stated, parts=("plate", "nut")), replace(stated, kind="Gears"), replace(stated, distance=0.0), stated]
+    (read,), runs = threaded([rod], [*others, stated], {"plate": SE3.identity()})
+    assert runs == [False, False, False, True, False], "one thread runs on a joint"
     turn = read.rest[0]
     ends = sorted(turn + (slide - 2.0) * math.tau / lead for slide in (-10.0, 20.0))
     assert math.cos(turn) == pytest.approx(math.cos(0.5))
     assert (read.limits.lower[0], read.limits.upper[0]) == pytest.approx((max(-20.0, ends[0]), min(12.0, ends[1])))
-    assert threaded([rod], replace(stated, parts=("plate", "nut")), {"plate": SE3.identity()}) is None
