@@ -13,7 +13,7 @@ from typing import Final
 
 from articad.errors import ArticadError
 from articad.kinematics.joints import JointType
-from articad_bench.checks import AnyCheck, Joints, Lead, Made, Moves, Parts, moved_shares
+from articad_bench.checks import AnyCheck, Joints, Lead, Made, Moves, Parts, Reaches, moved_shares
 from articad_bench.likeness_checks import Arranged, Handed, Matter, Row, arrangement, filled, handedness, moments_of
 from articad_bench.machined_checks import Machined, Toleranced, fits_stated, machined
 from articad_bench.subject import Subject
@@ -84,8 +84,14 @@ def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
     hand = handedness(subject) if shows_hands(task) else 0.0
     if hand > DETAIL:
         matter = tuple(round(value, 5 if hand <= HAND else 4) for value in moments_of(subject).tolist())
-        checks.append(Handed(matter=matter, margin=0.0 if hand > HAND else _rounded(hand / 2)))
+        loosely = hand <= HAND or _tells_sides(task)
+        checks.append(Handed(matter=matter, margin=_rounded(hand / 2) if loosely else 0.0))
     return checks
+
+
+def _tells_sides(task: Task) -> bool:
+    """Return whether the sides to which a product moves tell its hand: without a picture, how its matter lies is then its maker's choice."""
+    return not task.images and task.given is None and any(isinstance(check, Reaches) for check in task.checks)
 
 
 def _rows(rows: Sequence[Row]) -> tuple[Row, ...]:

@@ -403,9 +403,22 @@ class Gap(Check):
         gap = _between_bodies(subject, joint) if self.bodies else Gauge(subject.scene, joint, near).rest()
         if gap < -CONTACT_MM or within(gap, self.mm):
             return gap
-        # a little off its seat to either side, edges that cross each other do not touch
-        plays = (_least_play(subject, joint, near, lifted) for lifted in (0.0, CONTACT_MM, -CONTACT_MM))
+        plays = (_least_play(subject, joint, near, place) for place in _places(joint))
         return max((play for play in plays if play is not None), default=gap)
+
+
+def _places(joint: Joint) -> Iterator[SE3]:
+    """Yield poses of a joint's child in its parent's frame at which its play counts, rest first.
+
+    A little off its seat to either side, edges that cross each other do not touch; half-way, a cone has left its seat.
+    """
+    ranges, axis = freedoms(joint), joint.T_parent_connector
+    rest = SE3.from_matrix(placed(joint, [one.rest for one in ranges]))
+    yield rest
+    for lifted in (CONTACT_MM, -CONTACT_MM):
+        yield axis @ SE3.trans(0, 0, lifted) @ axis.inverse() @ rest
+    if joint.type in (JointType.SLIDER, JointType.CYLINDRICAL, JointType.SCREW):
+        yield SE3.from_matrix(placed(joint, [(one.lower + one.upper) / 2 for one in ranges]))
 
 
 def _ways_across(kind: JointType) -> list[SE3]:
@@ -414,25 +427,23 @@ def _ways_across(kind: JointType) -> list[SE3]:
     return [*sideways, *([SE3.identity()] if kind in (JointType.PLANAR, JointType.BALL) else [])]
 
 
-def _least_play(subject: Subject, joint: Joint, fit: Fit, lifted: float) -> float | None:
-    """Return the least play over directions across a joint [mm], its child moved along the axis; None if nothing stops it, or it overlaps there."""
-    axis = joint.T_parent_connector
-    T = axis @ SE3.trans(0, 0, lifted) @ axis.inverse() @ SE3.from_matrix(placed(joint, [one.rest for one in freedoms(joint)]))
+def _least_play(subject: Subject, joint: Joint, fit: Fit, place: SE3) -> float | None:
+    """Return the least play over directions across a joint [mm], its child at a pose; None if nothing stops it, or it overlaps there."""
     plays = []
     for turned in _ways_across(joint.type):
-        frame = axis @ turned
+        frame = joint.T_parent_connector @ turned
         along = replace(
             joint,
             type=JointType.PLANAR,
             T_parent_connector=frame,
-            T_child_connector=T.inverse() @ frame,
+            T_child_connector=place.inverse() @ frame,
             mate=Mate.ALIGNED,
             rest=JointType.PLANAR.neutral,
             limits=JointLimits((0.0,) * 3, (0.0,) * 3),
             lead=0.0,
         )
         gauge = Gauge(subject.scene, along, fit)
-        if lifted and gauge.rest() <= 0:
+        if gauge.rest() < -CONTACT_MM:
             return None
         plays.append(gauge.play())
     return min((play for play in plays if play is not None), default=None)

@@ -8,6 +8,7 @@ from typing import Final, Literal
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
+from scipy.spatial import ConvexHull
 
 from articad.arrays import FloatArray
 from articad.geometry import TriMesh
@@ -18,6 +19,7 @@ from articad_bench.subject import Subject
 PLACE: Final = 0.12  # of the diagonal of the whole, by which a part may lie beside its place
 LOOSELY: Final = {3: 2.2, 4: 1.3}  # the same, where sizes are read off photos
 APART: Final = 0.03  # of the diagonal: places nearer to each other are not told apart
+_MATTER: Final = 3  # the column of the share of the matter
 LARGER: Final = {3: 1.3, 4: 1.04}  # in volume and in size, by column: parts nearer to each other than this have no order
 TURNS: Final = tuple(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]], dtype=np.float64) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1)))
 """What the whole may be turned by about the upright axis: no picture says which way is x."""
@@ -38,6 +40,8 @@ class Arranged(Check):
         bodies: Whether these are bodies: parts that are fixed together count as one. Bodies may be of any number of parts, and how much of
             its box a body fills is its maker's choice; so their order of size is that of their boxes.
         loosely: Whether sizes are read off photos: then only parts of very different sizes have an order.
+
+    No picture says what is solid and what is hollow: a tube that is larger than a plate may be of less matter.
     """
 
     kind: Literal["arranged"] = "arranged"
@@ -57,6 +61,7 @@ class Arranged(Check):
         found, wanted = np.array(arrangement(subject, bodies=self.bodies)), np.array(self.parts)
         if len(found) != len(wanted):
             return False, f"{len(found)} {self._name}"
+        found = np.column_stack([found, [0.0] * len(found) if self.bodies else _hulls(subject)])
         least = {column: (LOOSELY if self.loosely else LARGER)[column] for column in ((4,) if self.bodies else (3, 4))}
         tries = [_compared(found, wanted, turn, least) for turn in TURNS]
         beside, reversed_ = min(tries, key=lambda each: (each[0] > PLACE or each[1] > 0, each))
@@ -70,7 +75,7 @@ def _compared(found: FloatArray, wanted: FloatArray, turn: FloatArray, least: Ma
     """Return how far the worst part lies beside its place, and how many pairs of parts have the other order of size by some columns.
 
     Args:
-        found: Rows of the product.
+        found: Rows of the product, and the volumes of their hulls.
         wanted: Rows that are shown.
         turn: Of the whole.
         least: By column, how many times larger a part must be shown to be the larger one.
@@ -83,9 +88,15 @@ def _compared(found: FloatArray, wanted: FloatArray, turn: FloatArray, least: Ma
         if np.linalg.norm(wanted[a, :3] - wanted[b, :3]) < APART:
             continue
         for column, times in least.items():
-            shown, is_ = np.log(wanted[a, column] / wanted[b, column]), np.log(mine[a, column] / mine[b, column])
-            wrong += bool(abs(shown) > np.log(times) and shown * is_ < 0)
+            shown = np.log(wanted[a, column] / wanted[b, column])
+            orders = [np.log(mine[a, each] / mine[b, each]) for each in ((column, -1) if column == _MATTER else (column,))]
+            wrong += bool(abs(shown) > np.log(times) and all(shown * order < 0 for order in orders))
     return float(apart[rows, places].max()), wrong
+
+
+def _hulls(subject: Subject) -> list[float]:
+    """Return the volume of the convex hull of each part [mm³]."""
+    return [float(ConvexHull(mesh.vertices, qhull_options="QJ").volume) for mesh in placed(subject)]
 
 
 def arrangement(subject: Subject, *, bodies: bool = False) -> list[Row]:

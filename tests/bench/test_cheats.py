@@ -200,6 +200,24 @@ def test_parts_lie_where_a_picture_shows_them_whichever_way_the_whole_is_turned(
     assert check.judge(of(*quarter, joints=list(shown.assembly.joints))).ok
 
 
+def test_a_picture_does_not_say_whether_a_bar_is_solid_or_a_tube() -> None:
+    """A bar of 40 x 20 mm before a plate of 120 x 120 x 4 mm; a plate of the same place that is the smaller one is refused."""
+
+    def stand(*, wall: float | None, plate: float = 4.0, side: float = 120.0) -> Subject:
+        bar = solid(box(40, 120, 20))
+        if wall is not None:
+            bar -= solid(box(40 - 2 * wall, 130, 20 - 2 * wall))
+        bodies = (("bar", made("Add", bar)), ("plate", placed(box(side, plate, side), 0, -60 - plate / 2, 0)))
+        return of(*bodies, joints=[joint("held", "fixed", ("bar", at(0)), ("plate", at(0)))])
+
+    (check,) = (each for each in bindings(pictured(2), stand(wall=None)) if each.kind == "arranged")
+
+    assert check.judge(stand(wall=2.5)).ok
+    assert check.judge(stand(wall=None)).ok
+    assert not check.judge(stand(wall=None, plate=12.0)).ok  # the plate is the larger one, whatever is within the bar
+    assert not check.judge(stand(wall=2.5, plate=12.0)).ok
+
+
 def test_a_mirror_image_is_told_from_what_a_picture_shows_and_another_construction_is_not() -> None:
     def with_handle(y: float, width: float) -> Subject:
         body = made("Add", solid(box(100, 60, 20)), solid(placed(box(width, 10, 40), 35, y, 20)))
@@ -214,6 +232,30 @@ def test_a_mirror_image_is_told_from_what_a_picture_shows_and_another_constructi
     assert not check.judge(with_handle(-25, 12)).ok
     assert [each.kind for each in bindings(pictured(2), with_handle(0, 12))] == ["matter", "arranged"]  # it is its own mirror image
     assert [each.kind for each in bindings(task(prompt="A block with a handle."), shown)] == ["matter"]  # nothing tells left from right
+
+
+def test_words_tell_the_hand_of_a_gate_by_the_side_to_which_it_opens() -> None:
+    """A gate on the left post that opens to the back; the weight of the posts, which no word states, is no sign of its hand."""
+    swing = {"type": "revolute", "axis": [0, 0, 1]}
+    sides = [{"kind": "reaches", "joint": swing, "toward": toward, "mm": [50, 500]} for toward in ([-1, 0, 0], [0, 1, 0])]
+    asked = task(
+        prompt="A gate on pins at the left post, opening to +y.", checks=[{"kind": "joints", "joint": swing, "number": [1, 1]}, *sides]
+    )
+
+    def gate(left: float, right: float, *, pins: int = -1) -> Subject:
+        posts = [("left", placed(box(20, left, 100), -120, left / 2, 0)), ("right", placed(box(20, right, 100), 120, right / 2, 0))]
+        limits = (0.0, math.pi / 2) if pins < 0 else (-math.pi / 2, 0.0)
+        hung = joint("swing", "revolute", ("left", at(100 * pins)), ("leaf", at(100 * pins)), limits=[limits])
+        sill = joint("sill", "fixed", ("left", at(0)), ("right", at(0)))
+        return of(*posts, ("leaf", placed(box(200, 10, 90), 0, 5, 0)), joints=[hung, sill])
+
+    checks = bound(asked, gate(60, 20)).checks
+
+    assert any(check.kind == "handed" for check in checks)
+    assert all(check.judge(gate(60, 20)).ok for check in checks if check.kind in ("handed", "reaches"))
+    assert all(check.judge(gate(38, 40)).ok for check in checks if check.kind in ("handed", "reaches"))
+    for mirrored in (gate(20, 60, pins=1), gate(40, 38, pins=1)):
+        assert not all(check.judge(mirrored).ok for check in checks if check.kind in ("handed", "reaches"))
 
 
 def test_bodies_lie_where_a_picture_shows_them_of_however_many_parts_they_are_made() -> None:

@@ -247,6 +247,21 @@ def test_a_part_that_sits_in_its_shoulder_has_no_gap() -> None:
     assert not form({"kind": "gap", "joint": {"type": "revolute"}, "mm": [0.1, 0.3]}).judge(subject).ok
 
 
+@pytest.mark.parametrize("kind", ["screw", "slider"])
+@pytest.mark.parametrize(("bore", "fits"), [(4.15, True), (4.02, False), (4.6, False)])
+def test_a_needle_that_is_drawn_shut_has_the_gap_of_its_bore(bore: float, fits: bool, kind: str) -> None:
+    """Its cone is in its seat, where it has no play; it opens by 4 mm."""
+    body = m3.Manifold.cylinder(60, 15, 15, 64).translate([0, 0, -25]) - m3.Manifold.cylinder(90, 3, 3, 64, center=True)
+    body -= m3.Manifold.cylinder(90, bore, bore, 64)
+    needle = m3.Manifold.cylinder(8, 0, 4, 64).translate([0, 0, -6]) + m3.Manifold.cylinder(60, 4, 4, 64).translate([0, 0, 2])
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in (("body", body), ("needle", needle))]
+    opened = {"screw": (1.0, 8 * math.pi), "slider": (0.0, 4.0)}[kind]
+    turned = joint("dose", kind, ("body", at(0)), ("needle", at(0)), limits=[(0.0, opened[1])], lead=opened[0])
+    subject = Subject(Assembly.from_parts("valve", parts=parts, joints=[turned], ground="body"))
+
+    assert form({"kind": "gap", "joint": {"type": kind}, "mm": [0.08, 0.22]}).judge(subject).ok is fits
+
+
 @pytest.mark.parametrize(("high", "fits"), [(8.2, True), (8.0, False)])
 def test_a_pin_that_is_tight_in_one_direction_has_no_gap(high: float, fits: bool) -> None:
     """A bore that is not round, on a shoulder."""
