@@ -23,7 +23,7 @@ from articad_bench.whole_checks import Threads
 __all__ = ["HANDED", "NotBoundError", "bindings", "bound", "bound_task", "shows_hands"]
 
 VOLUME: Final = 5.0  # times less or more of the matter
-GREATEST: Final = 2.5  # times less, for the joint that moves most
+GREATEST: Final = 2.5  # times less, for the joint that moves most, where proportions are shown
 SIZE: Final = 2.0  # times smaller or larger, as a share of the whole
 HAND: Final = 0.02  # by which the moments of mirror images differ, at least, where the whole has a hand
 DETAIL: Final = 0.001  # by which they differ where a detail has one: less is the roughness of meshes
@@ -53,7 +53,8 @@ def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
         all_of_them = (_rounded(min(volume) / VOLUME), min(1.0, _rounded(max(volume) * VOLUME)))
         checks.append(Moves(joint=check.joint, volume=all_of_them, size=sizes, number=check.number))
         if max(volume) > GREATEST * min(volume):
-            checks.append(Moves(joint=check.joint, volume=(_rounded(max(volume) / GREATEST), 1.0), size=sizes))
+            less = GREATEST if task.images or task.given else VOLUME
+            checks.append(Moves(joint=check.joint, volume=(_rounded(max(volume) / less), 1.0), size=sizes))
     moving, unmade = sum(joint.type is not JointType.FIXED for joint in subject.assembly.joints), len(subject.unmade)
     if unmade < moving:  # else the check could not fail
         checks.append(Made(except_for=unmade))

@@ -46,6 +46,7 @@ from articad_bench.whole_checks import Extent, Threads
 
 _ABOUT_LINE: Final = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
 STROKE: Final = 9  # values of a driver at which what follows it is measured
+TURN: Final = 73  # the same, of one that turns without end: every five degrees, wherever it is at rest
 CLOSED_MM: Final = 1e-6
 LEAST_WALL_MM: Final = 0.2  # a wire or a foil is no part
 WALL_SAMPLES: Final = 60
@@ -642,7 +643,8 @@ def _travel(subject: Subject, joint: Joint) -> float:
 def _stroke_poses(subject: Subject, driver: str) -> Iterator[Any]:
     assembly = subject.assembly
     column = [coordinate.name for coordinate in assembly.drivers].index(driver)
-    for point in subject.stroke(driver, STROKE):
+    endless = np.isinf(assembly.drivers[column].upper - assembly.drivers[column].lower)
+    for point in subject.stroke(driver, TURN if endless else STROKE):
         q = np.array(assembly.mechanism.rest)
         q[column] = point
         yield dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))

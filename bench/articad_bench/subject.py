@@ -182,12 +182,17 @@ class Subject:
 
     @cached_property
     def unmade(self) -> tuple[str, ...]:
-        """Names of the joints that no surfaces make, or whose bodies can leave them sideways."""
+        """Names of the joints that no surfaces make, or whose bodies can leave them sideways.
+
+        Where surfaces that are not known lie near, those that are known may still hold the joint sideways: then it is free along its axis alone.
+        """
         moving = [joint.name for joint in self.assembly.joints if joint.type is not JointType.FIXED]
         return tuple(
             row.joint
             for row in self.assembly.check_joints(moving).rows
-            if row.verdict in {"not made", "not assessed"} or any(loss.way[1:] in _ASIDE[row.type] for loss in row.losses)
+            if row.verdict == "not made"
+            or (row.verdict == "not assessed" and not row.losses)
+            or any(loss.way[1:] in _ASIDE[row.type] for loss in row.losses)
         )
 
     def mass(self, part: str) -> MassProperties | None:

@@ -258,6 +258,21 @@ def test_words_tell_the_hand_of_a_gate_by_the_side_to_which_it_opens() -> None:
         assert not all(check.judge(mirrored).ok for check in checks if check.kind in ("handed", "reaches"))
 
 
+@pytest.mark.parametrize(("images", "base", "fits"), [([], 6, True), ([], 14, True), ([], 60, False), (["drawing.png"], 14, False)])
+def test_how_much_of_the_matter_moves_is_known_where_proportions_are_shown(images: list[str], base: float, fits: bool) -> None:
+    """An orrery: how thick the base is that carries two arms, of which one is ten times as heavy, no text says."""
+
+    def orrery(thick: float) -> Subject:
+        turns = [joint(name, "revolute", ("base", at(0)), (name, at(0)), limits=[(0.0, 1.0)]) for name in ("long", "short")]
+        arms = [("long", placed(box(100, 10, 10), 40, 0, 20)), ("short", placed(box(40, 5, 5), 20, 0, 40))]
+        return of(("base", placed(box(100, 100, thick), 0, 0, -thick / 2)), *arms, joints=turns)
+
+    two = {"kind": "joints", "joint": {"type": "revolute"}, "number": [2, 2]}
+    checks = [check for check in bindings(task(images=images, checks=[two]), orrery(4)) if check.kind == "moves"]
+
+    assert all(check.judge(orrery(base)).ok for check in checks) is fits
+
+
 def test_bodies_lie_where_a_picture_shows_them_of_however_many_parts_they_are_made() -> None:
     """A carriage may be one part or two; a body that lies elsewhere, or has changed places with a larger one, is refused."""
     slides = [joint(f"s{i}", "slider", ("base", at(0)), (name, at(0)), limits=[(0.0, 9.0)]) for i, name in enumerate("ab")]

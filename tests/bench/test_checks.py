@@ -16,7 +16,7 @@ from pydantic import TypeAdapter
 from articad import examples
 from articad.assembly import Assembly
 from articad.connectors import SE3
-from articad.geometry import Part, box
+from articad.geometry import Part, box, cylinder
 from articad.kinematics.joints import Coupling, Joint, JointLimits
 from articad.plan.schema import AssemblyPlan
 from articad_bench.checks import AnyCheck, Check
@@ -291,3 +291,29 @@ def test_a_pin_of_its_own_holds_the_gap_of_the_parts_that_it_joins(thick: float,
     judged = form({"kind": "gap", "joint": {"type": "revolute"}, "mm": [0.1, 0.3], "bodies": bodies}).judge(subject)
 
     assert judged.ok is fits, judged
+
+
+@pytest.mark.parametrize("degrees", [0, 10, 22, 60, 111])
+def test_how_far_an_arm_without_end_reaches_does_not_depend_on_where_it_rests(degrees: float) -> None:
+    """An arm of 120 mm on a base of 190 mm comes 25 mm beyond it."""
+    parts = [Part.from_mesh(name, mesh) for name, mesh in (("base", cylinder(95, 10)), ("arm", box(120, 4, 4, center=False)))]
+    turn = joint("turn", "revolute", ("base", SE3.rot_z(math.radians(degrees)) @ at(0, 0, 6)), ("arm", at(0)))
+    subject = Subject(Assembly.from_parts("orrery", parts=parts, joints=[turn], ground="base"))
+
+    assert form({"kind": "rise", "axis": "x", "mm": [24.5, 25.2]}).judge(subject).ok
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(("bore", "made"), [(5.2, True), (8.0, False)])
+def test_a_pin_holds_its_bore_whichever_side_is_the_child_and_whatever_lies_near(bore: float, made: bool, turned: bool) -> None:
+    """An arm that can be lifted off its post, in front of which it has a cone that is part of neither pin nor bore."""
+    post = m3.Manifold.cylinder(10, 12, 12, 64).translate([0, 0, -10]) + m3.Manifold.cylinder(8, 5, 5, 64)
+    arm = m3.Manifold.cube([60, 20, 8]).translate([-10, -10, 0.2]) - m3.Manifold.cylinder(99, bore, bore, 64, center=True)
+    arm += m3.Manifold.cylinder(4, 0.5, 3, 64).translate([14, 0, -3.5])
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in (("post", post), ("arm", arm))]
+    ends = [("post", at(0)), ("arm", at(0))]
+    swing = joint("swing", "revolute", *(ends[::-1] if turned else ends), limits=[(-0.2, 0.2)])
+
+    subject = Subject(Assembly.from_parts("knuckle", parts=parts, joints=[swing], ground="post"))
+
+    assert form({"kind": "made"}).judge(subject).ok is made

@@ -1,11 +1,13 @@
 """Second solutions: products that somebody made of the text of a task alone, in another construction than the reference.
 
 A check that refuses one refuses what the text allows. Each is a folder of `tests/bench/second`, named after its task, with `plan.json` and
-`parts/`; it was made without a look at the reference or at the rows of `task.json`.
+`parts/`; it was made without a look at the reference or at the rows of `task.json`. Where the task has edits, `edits.json` may say
+which parameters of the plan make each: `[{"throw": 28}]`.
 """
 
 from __future__ import annotations
 
+import json
 from functools import cache
 from pathlib import Path
 from typing import Final
@@ -29,6 +31,7 @@ NAMES: Final = [
     if folder.is_dir()
 ]
 BEGUN_WITH_NOTHING: Final = [name for name in NAMES if ALL[str(name.values[0])][1].given is None]
+EDITED: Final = sorted(file.parent.name for file in SECOND.glob("*/edits.json"))
 
 
 @cache
@@ -54,6 +57,18 @@ def test_it_is_another_construction(name: str) -> None:
     ours = [part.mesh.digest for part in second(name).parts.values() if part.mesh is not None]
 
     assert sum(digest in theirs for digest in ours) < len(ours) / 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.soak) for name in EDITED])
+def test_it_makes_the_edits(name: str) -> None:
+    edits, (_, task) = json.loads((SECOND / name / "edits.json").read_text(encoding="utf-8")), ALL[name]
+    before = second(name)
+    assert len(edits) == len(task.edits)
+    for stage, values in enumerate(edits, start=1):
+        after = before.with_parameters(**values)
+        assert [str(judged) for judged in task.judge(Subject(after, before=before), stage) if not judged.ok] == []
+        before = after
 
 
 @pytest.mark.slow

@@ -11,5 +11,5 @@ def yoke(plate, total, wheel_d, trail, king_d, crown, gap, axle_d, play, inner, 
     shape = Pos(-trail, down) * Circle(leg_wide / 2) + Pos(-trail, (down - 1) / 2) * Rectangle(leg_wide, -down - 1)
     shape -= Pos(-trail, down) * Circle(axle_d / 2)
     for y in (-inner / 2, wide / 2):
-        body += Pos(0, y, 0) * Plane.XZ * extrude(shape, leg)
+        body += Pos(0, y, 0) * (Plane.XZ * extrude(shape, leg))
     return body - Cylinder(king_d / 2 + play, 3 * crown)
