@@ -193,7 +193,7 @@ def _bound(track: Track, coordinate: Coordinate, sign: int) -> tuple[float, str]
     for column, ratio, offset in system.ties.tied_to(track.column):
         other = system.layout.coordinates[column]
         limit = ((other.upper if ratio * sign > 0 else other.lower) - offset) / ratio
-        if sign * (bound - limit) > LIMIT_SLACK * max(1.0, 1.0 / abs(ratio)):
+        if sign * bound > sign * limit + LIMIT_SLACK * max(1.0, 1.0 / abs(ratio)):  # both may be infinite
             bound, why = limit, f"limit of {other.name}"
     return bound, why
 

@@ -564,3 +564,19 @@ def test_a_range_ends_at_the_drivers_own_limit_however_far_it_was_followed_befor
     assert [found.upper for found in reached] == [turn.upper] * 3
     assert [found.lower for found in reached] == [turn.lower] * 3
     assert {found.upper_reason for found in reached} == {"declared limit"}
+
+
+@pytest.mark.parametrize("number", [float, np.float64])
+@pytest.mark.parametrize("ratio", [13 / 8, -2.0])
+def test_joints_without_end_that_are_coupled_have_no_end(number: type[float], ratio: float) -> None:
+    """Readers of files hand over numbers of numpy, which warn of the difference of two infinities; a limit of the other joint still counts."""
+    endless = [(number(-math.inf), number(math.inf))]
+    joints = [joint(name, "revolute", ("base", at(x)), (name, at(0)), limits=endless) for name, x in (("year", 0), ("venus", 40))]
+    couplings = [Coupling("drive", "linear", "year", "venus", ratio)]
+
+    free = Mechanism(("base", "year", "venus"), "base", joints, couplings)
+    held = replace(joints[1], limits=JointLimits((number(-1.0),), (number(math.inf),)))
+    one_sided = Mechanism(("base", "year", "venus"), "base", [joints[0], held], couplings).feasible_range("year")
+
+    assert (free.feasible_range("year").lower, free.feasible_range("year").upper) == (-math.inf, math.inf)
+    assert (one_sided.lower, one_sided.upper) == pytest.approx((-1 / ratio, math.inf) if ratio > 0 else (-math.inf, -1 / ratio))
