@@ -1,5 +1,6 @@
-from build123d import Align, Cylinder, Sphere
+from build123d import Align, Box, Pos, Sphere
 
 
-def sun(across=28, neck_d=6):
-    return Sphere(across / 2) - Cylinder(neck_d / 2, across, align=(Align.CENTER, Align.CENTER, Align.MAX))
+def sun(sun_d, sun_low):
+    """A ball with a flat below, on which it is glued."""
+    return Sphere(sun_d / 2) - Pos(0, 0, -sun_low) * Box(sun_d, sun_d, sun_d, align=(Align.CENTER, Align.CENTER, Align.MAX))
