@@ -54,6 +54,7 @@ def test_losses_are_told_and_strict_refuses(tmp_path: Path) -> None:
 
 
 def test_unknown_endings_are_named_with_those_that_are_known(tmp_path: Path) -> None:
+    (tmp_path / "a.blend").touch()
     with pytest.raises(ReadError, match=r"\.urdf, \.xml"):
         read(tmp_path / "a.blend")
     with pytest.raises(ExportError, match=r"\.urdf, \.xml"):

@@ -11,6 +11,7 @@ import pytest
 from articad.cli import main
 from articad.commands.terminal import Terminal
 from articad.errors import ArticadError
+from articad.report import Documents
 
 SLOW = {
     "audit a.urdf": "articad.auditing.examine.audit_file",
@@ -42,8 +43,8 @@ def test_a_command_says_that_it_works(line: str, tmp_path: Path, monkeypatch: py
         monkeypatch.setattr(f"articad.commands.{name}.loaded", lambda *_: None)
     for name in ("view", "open"):
         monkeypatch.setattr(f"articad.runs.run.Run.{name}", lambda *_: nullcontext())
-    for name in ("assembly_of", "documents_of"):
-        monkeypatch.setattr(f"articad.runs.record.{name}", lambda *_, **__: None)
+    for name, given in (("assembly_of", None), ("documents_of", Documents())):
+        monkeypatch.setattr(f"articad.runs.record.{name}", lambda *_, given=given, **__: given)
     monkeypatch.setattr(Terminal, "progress", progress)
     monkeypatch.setattr(SLOW[line], slow)
     monkeypatch.chdir(tmp_path)
