@@ -328,7 +328,7 @@ def test_a_run_is_gone_on_with_by_its_folder_alone(tmp_path: Path) -> None:
         ({"repairs": None}, "lacks options: repairs"),
         ({"formats": "urdf", "rounds": "3"}, "rounds, formats"),
         ({"task": "build"}, "articad build"),
-        ({"kernel": 3}, "lacks options: kernel"),
+        ({"kernel": 3}, "options.kernel is missing or is something else"),
     ],
 )
 def test_a_request_that_somebody_else_wrote_is_not_trusted(tmp_path: Path, change: dict[str, Any], said: str) -> None:
