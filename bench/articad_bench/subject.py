@@ -58,6 +58,7 @@ class Subject:
     def __post_init__(self) -> None:
         if self.assembly.waivers:  # whoever is judged does not say what is allowed
             object.__setattr__(self, "assembly", replace(self.assembly, waivers=()))
+        object.__setattr__(self, "assembly", _cranked(self.assembly))
 
     def turned(self, quarters: int) -> Subject:
         """Return the product, and what was there before, turned by quarters about the upright axis; its file stays as it is."""
@@ -262,3 +263,28 @@ class Subject:
         closed = self.assembly.solve(q).reached
         reasons = feasible.lower_reason, feasible.upper_reason
         return [bool(ok) and reason.startswith(_SOUND) for ok, reason in zip(closed, reasons, strict=True)]
+
+
+def _cranked(assembly: Assembly) -> Assembly:
+    """Return an assembly that states no driver with the crank as its driver that turns without end beside the ground.
+
+    Which joint of a loop drives is else decided by the order of the joints in a file; one that goes to and fro does not pass its dead points.
+    """
+    known = assembly.mechanism
+    if any(joint.driver for joint in known.given_joints) or any(_is_endless(drive.lower, drive.upper) for drive in assembly.drivers):
+        return assembly
+    driven = {drive.joint for drive in assembly.drivers}
+    for crank in known.given_joints:
+        if crank.type is not JointType.REVOLUTE or crank.name in driven or known.ground not in (crank.parent, crank.child):
+            continue
+        if not _is_endless(*crank.limits.lower, *crank.limits.upper):
+            continue
+        joints = [replace(joint, driver=joint is crank) for joint in known.given_joints]
+        mechanism = Mechanism(known.parts, known.ground, joints, known.couplings, known.T_ground)
+        if any(drive.joint == crank.name for drive in mechanism.drivers):
+            return replace(assembly, mechanism=mechanism)
+    return assembly
+
+
+def _is_endless(lower: float, upper: float) -> bool:
+    return math.isinf(lower) and math.isinf(upper)

@@ -317,3 +317,22 @@ def test_a_pin_holds_its_bore_whichever_side_is_the_child_and_whatever_lies_near
     subject = Subject(Assembly.from_parts("knuckle", parts=parts, joints=[swing], ground="post"))
 
     assert form({"kind": "made"}).judge(subject).ok is made
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3), (3, 2, 1, 0), (3, 1, 0, 2)])
+def test_what_a_crank_moves_does_not_depend_on_the_order_of_joints_that_state_no_driver(order: tuple[int, ...]) -> None:
+    """A Scotch yoke of 24 mm throw: driven by its plunger, it would stop at both dead points."""
+    x, z = 24 * math.cos(0.7), 24 * math.sin(0.7)
+    upright = SE3.rot_y(math.pi / 2)
+    level = SE3.rot_x(math.pi / 2)
+    joints = [
+        joint("crank", "revolute", ("base", level), ("crank", level)),
+        joint("pin", "revolute", ("crank", at(x, 0, z) @ level), ("block", level)),
+        joint("slot", "slider", ("yoke", at(x, 0, z)), ("block", at(0)), limits=[(-60.0, 60.0)]),
+        joint("plunger", "slider", ("base", at(0) @ upright), ("yoke", at(0) @ upright), limits=[(-60.0, 60.0)]),
+    ]
+    subject = of(*(joints[i] for i in order), sides={"base": 9})
+
+    for axis in ([0, 0, 1], [1, 0, 0]):
+        judged = form({"kind": "travel", "joint": {"type": "slider", "axis": axis}, "by": [47.6, 48.4]}).judge(subject)
+        assert judged.ok, judged
