@@ -1,10 +1,15 @@
-"""How many values JSON has, before it is parsed: a parser makes up to 80 bytes of two characters. Standard library only."""
+"""How much text is parsed, and how many values it has before that: a parser makes up to 80 bytes of two characters. Standard library only."""
 
 from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["values_in"]
+__all__ = ["TEXT_BYTES", "TEXT_VALUES", "values_in"]
+
+TEXT_BYTES: Final = 128 << 20
+"""Of a file that a command parses whole: a certificate, or a file of cases."""
+TEXT_VALUES: Final = 6_000_000
+"""In such a file."""
 
 _COUNTED: Final = (b",", b"[", b"{", b":")
 """What begins or ends each value, so that there are at least as many as values; those within texts count, too."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
-from articad.bounds import values_in
+from articad.bounds import TEXT_BYTES, TEXT_VALUES, values_in
 from articad.commands.command import argument, command
 from articad.commands.options import amount, names
 from articad.files import is_file, read_file
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from articad.plan.iso2768 import ToleranceClass
 
 CERTIFICATE = "certificate.json"
-_BYTES: Final = 128 << 20  # of the text of a certificate that is checked
-_VALUES: Final = 6_000_000  # in it: each takes up to 80 bytes
 
 
 @command(
@@ -92,7 +90,7 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
         )
     with terminal.progress("Checking"):
         faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
-    stated = [] if faults else _stated(json.loads(read_file(file, _BYTES)))
+    stated = [] if faults else _stated(json.loads(read_file(file, TEXT_BYTES)))
     for line in [*faults, *stated]:
         terminal.say(f"  {line}")
     verdict = "accepted" if not faults else "not checked" if faults[0].endswith(UNREAD) else "refuted"
@@ -103,10 +101,10 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
 def _too_large(file: Path) -> str:
     """Return why the text of a certificate is not parsed; empty if it is."""
     try:
-        values = values_in(read_file(file, _BYTES))
+        values = values_in(read_file(file, TEXT_BYTES))
     except OSError as error:
         return str(error.strerror)
-    return f"it has more than {_VALUES} values" if values > _VALUES else ""
+    return f"it has more than {TEXT_VALUES} values" if values > TEXT_VALUES else ""
 
 
 def _stated(certificate: Report) -> list[str]:

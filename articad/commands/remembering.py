@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from articad.bounds import values_in
+from articad.bounds import TEXT_BYTES, TEXT_VALUES, values_in
 from articad.commands.command import argument, command
 from articad.commands.options import API_BASE, EMBEDDINGS, MEMORY, positive, words
 from articad.commands.steps import experience
@@ -28,8 +28,6 @@ _WHAT: Final = {  # each action, and the argument that it needs
     "remove": "a case's id",
     "prune": "",
 }
-_BYTES: Final = 128 << 20  # of a file of cases
-_VALUES: Final = 6_000_000  # in it: each takes up to 80 bytes
 _LIKE: Final = 5  # cases of each kind that a search shows
 _WORDS: Final = 60  # characters of a request in a table
 
@@ -108,9 +106,9 @@ def _text(path: Path) -> str:
     from articad.errors import ReadError
 
     try:
-        content = read_file(path, _BYTES)
-        if values_in(content) > _VALUES:
-            raise ReadError.at(path, f"{path} has more than {_VALUES} values.", "Import it in pieces: each line is a case.")
+        content = read_file(path, TEXT_BYTES)
+        if values_in(content) > TEXT_VALUES:
+            raise ReadError.at(path, f"{path} has more than {TEXT_VALUES} values.", "Import it in pieces: each line is a case.")
         return content.decode()
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8"

@@ -8,12 +8,13 @@ import numpy as np
 import numpy.typing as npt
 
 from articad.arrays import FloatArray
+from articad.connectors import quaternion
 from articad.connectors.se3 import SE3
 from articad.errors import ConnectorError
 from articad.findings import Finding
 
 _NORMAL_ZERO = 1e-9  # length below which a normal has no direction
-_K = np.diag([1.0, -1.0, 1.0, 1.0])  # y is reversed after a reflection, so that the frame is right-handed again
+_K = np.array([1.0, -1.0, 1.0, 1.0])  # the diagonal of K: y is reversed after a reflection, so that the frame is right-handed again
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +36,7 @@ class Plane:
         point, normal = np.array(self.point, dtype=np.float64), np.array(self.normal, dtype=np.float64)
         if point.shape != (3,) or normal.shape != (3,) or not np.isfinite([point, normal]).all():
             raise _plane_error("E_NONFINITE", "A plane needs a point and a normal of three finite numbers each.")
-        length = np.linalg.norm(normal)
+        length = quaternion.length(normal)
         if length < _NORMAL_ZERO:
             raise _plane_error("E_AXIS_ZERO", "The plane's normal has zero length.")
         for name, vector in (("point", point), ("normal", normal / length)):
@@ -47,7 +48,7 @@ class Plane:
         """The reflection `(4, 4)`: linear part I − 2nnᵀ, determinant −1."""
         S = np.eye(4)
         S[:3, :3] -= 2.0 * np.outer(self.normal, self.normal)
-        S[:3, 3] = 2.0 * (self.normal @ self.point) * self.normal
+        S[:3, 3] = 2.0 * (self.normal * self.point).sum() * self.normal
         return S
 
 
@@ -107,7 +108,7 @@ class Connector:
         Args:
             S: Reflection `(4, 4)` in the part's frame.
         """
-        return replace(self, frame=SE3.from_matrix(np.asarray(S, dtype=np.float64) @ self.frame.matrix @ _K))
+        return replace(self, frame=SE3.from_matrix(quaternion.product(np.asarray(S, dtype=np.float64), self.frame.matrix * _K)))
 
     def drift(self, realised: SE3) -> Drift:
         """Return the deviation of a realised frame from this one."""

@@ -1,6 +1,7 @@
 """Unit quaternions as arrays `(*batch, 4)`, order x y z w: the arithmetic under `SE3`.
 
-Nothing here validates; the constructors of `SE3` do, once.
+Nothing here validates; the constructors of `SE3` do, once. Products and sums are written out:
+a library of linear algebra rounds the last digit by the processor's instructions, and frames go into files digit by digit.
 """
 
 from __future__ import annotations
@@ -21,6 +22,18 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     product = np.empty((*x.shape, 3))
     product[..., 0], product[..., 1], product[..., 2] = x, az * bx - ax * bz, ax * by - ay * bx
     return product
+
+
+def length(v: FloatArray) -> FloatArray:
+    """Return ‖v‖ over the last axis."""
+    norm: FloatArray = np.sqrt((v * v).sum(axis=-1))
+    return norm
+
+
+def product(A: FloatArray, B: FloatArray) -> FloatArray:
+    """Return the matrix A B."""
+    summed: FloatArray = (A[..., :, :, None] * B[..., None, :, :]).sum(axis=-2)
+    return summed
 
 
 def multiply(p: FloatArray, q: FloatArray) -> FloatArray:

@@ -409,12 +409,12 @@ def world_x(z: npt.ArrayLike) -> FloatArray:
 def project_across(x: FloatArray, z: FloatArray) -> FloatArray:
     """Project x perpendicular to the unit vector z; twice, because one projection leaves rounding proportional to x · z."""
     for _ in range(2):
-        x = _unit(x - (x @ z) * z)
+        x = _unit(x - (x * z).sum() * z)
     return x
 
 
 def _unit(v: FloatArray) -> FloatArray:
-    unit: FloatArray = v / np.linalg.norm(v)
+    unit: FloatArray = v / quaternion.length(v)
     return unit
 
 

@@ -10,6 +10,7 @@ import json
 import math
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -99,9 +100,14 @@ class Job:
         self._stiff: dict[str, list[Number]] = {}  # numbers of connectors that FreeCAD does not follow
         self._drawn: dict[str, Json] = {}  # volume and centre of the meshes that stand for parts
 
+    @cached_property
+    def _poses(self) -> Mapping[str, SE3]:
+        """Poses of the parts at rest."""
+        return self.assembly.at()
+
     def to_json(self) -> Json:
         """Return the document's parameters, parts and joints, as JSON."""
-        poses = self.assembly.at()
+        poses = self._poses
         parts = [self._part(name, part, poses[name]) for name, part in self.assembly.parts.items()]
         by_name = {part["name"]: part for part in parts}
         for part in parts:
@@ -470,7 +476,7 @@ class Job:
         return found
 
     def _couplings(self) -> Iterator[Json]:
-        joints, poses = {joint.name: joint for joint in self.assembly.joints}, self.assembly.at()
+        joints, poses = {joint.name: joint for joint in self.assembly.joints}, self._poses
         for coupling in self.assembly.mechanism.couplings:
             where, kind = f"couplings.{coupling.name}", _COUPLINGS.get(coupling.kind)
             if kind is None:

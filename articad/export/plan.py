@@ -296,7 +296,7 @@ def _rested(mechanism: Mechanism) -> Mechanism:
         loops |= {joint.name for joint in mechanism.tree.joints_between(loop.parent, loop.child)}
     if not outside and not loops & moved:
         try:
-            return Mechanism(mechanism.parts, mechanism.ground, joints, mechanism.couplings, T_ground=mechanism.T_ground)
+            return mechanism.changed(joints=joints)
         except KinematicsError:
             pass
     lost = "a ball, planar or universal joint of a plan rests at zero, but this one cannot"

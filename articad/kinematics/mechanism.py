@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -166,6 +166,27 @@ class Mechanism:
             cause = nearest(self.parts, self.ground, self.given_joints, self.couplings, coarse=True) or found
             return given if cause is None else given._replace(error=askew_error(given.error, cause))
         return given._replace(beyond=found)
+
+    def changed(
+        self, *, joints: Iterable[Joint] | None = None, couplings: Iterable[Coupling] | None = None, T_ground: SE3 | None = None
+    ) -> Mechanism:
+        """Return the mechanism of the same parts with other joints, other couplings, or its ground in another place.
+
+        Args:
+            joints: All joints; as they were given by default.
+            couplings: All couplings; the same by default.
+            T_ground: Pose of the ground; the same by default.
+
+        Raises:
+            PlanError: As the constructor.
+        """
+        return Mechanism(
+            self.parts,
+            self.ground,
+            self.given_joints if joints is None else tuple(joints),
+            self.couplings if couplings is None else tuple(couplings),
+            T_ground=self.T_ground if T_ground is None else T_ground,
+        )
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:

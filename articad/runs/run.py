@@ -764,17 +764,14 @@ def _read_request(path: Path) -> RunRequest:
         raise RunError.at(
             path, f"{path / REQUEST_FILE} is incomplete: {wrong} is missing or is something else.", "Name another run directory."
         )
-    named = [(image["file"], image.get("part")) for image in stored["images"]]
-    for name, count in Counter(
-        name for name, _ in named
-    ).items():  # an untrusted run may name any file, and its pictures are sent to a model
+    counts = Counter(image["file"] for image in stored["images"])
+    for name, count in counts.items():  # an untrusted run may name any file, and its pictures are sent to a model
         if not _IMAGE_FILE.fullmatch(name) or count > 1:
             why = "which is not in the run" if count == 1 else f"{count} times"
             raise RunError.at(path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, {why}.", "Do not use this run.")
-    left = _IMAGES_LIMIT
-    images = []
-    for name, part in named:
-        images.append(UserImage.read(path / name, part, path))
+    images, left = list[UserImage](), _IMAGES_LIMIT
+    for image in stored["images"]:
+        images.append(UserImage.read(path / image["file"], image.get("part"), path))
         left -= len(images[-1].content)
         if left < 0:
             break  # the request refuses them

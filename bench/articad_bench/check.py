@@ -67,5 +67,11 @@ def in_words(bounds: Bounds) -> str:
 
 def within(measured: float, bounds: Bounds) -> bool:
     """Return whether a measurement lies within bounds; who models exactly a bound is not refused for the last digits of a mesh."""
+    low, high = widened(bounds)
+    return low <= measured <= high
+
+
+def widened(bounds: Bounds) -> Bounds:
+    """Return bounds with the allowance of `within`."""
     low, high = (ROUNDED * max(1.0, abs(bound)) for bound in bounds)
-    return bounds[0] - low <= measured <= bounds[1] + high
+    return bounds[0] - low, bounds[1] + high

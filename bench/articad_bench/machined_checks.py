@@ -69,11 +69,12 @@ class Machined(Check):
 
     def _wrong(self, mesh: TriMesh) -> str | None:
         """Return what is wrong with a part; None if it is meant."""
-        volume, centre, _ = mesh.solid_integrals()
+        volume, centre, inertia = mesh.solid_integrals()
         if abs(volume / 1000 - self.cm3) > VOLUME * self.cm3:
             return f"{volume / 1000:.4g} cm³"
-        if self.spread is not None and (np.abs(_gyration(mesh) - self.spread) > SPREAD * np.array(self.spread)).any():
-            return f"radii of gyration {', '.join(f'{mm:.4g}' for mm in _gyration(mesh))} mm"
+        radii = _gyration(volume, inertia)
+        if self.spread is not None and (np.abs(radii - self.spread) > SPREAD * np.array(self.spread)).any():
+            return f"radii of gyration {', '.join(f'{mm:.4g}' for mm in radii)} mm"
         found = [_Cylinder.of(each, np.asarray(centre)) for each in rounds(mesh)]
         wanted = [_Cylinder.stored(row) for row in self.rounds]
         missing = _unmatched(wanted, found)
@@ -93,16 +94,15 @@ def machined(subject: Subject) -> list[Machined]:
             number = checks[again].number[0] + 1
             checks[again] = checks[again].model_copy(update={"number": (number, number)})
             continue
-        volume, centre, _ = mesh.solid_integrals()
+        volume, centre, inertia = mesh.solid_integrals()
         cylinders = [_Cylinder.of(each, np.asarray(centre)) for each in rounds(mesh)]
-        a, b, c = (float(f"{mm:.5g}") for mm in _gyration(mesh))
+        a, b, c = (float(f"{mm:.5g}") for mm in _gyration(volume, inertia))
         checks.append(Machined(cm3=float(f"{abs(volume) / 1000:.5g}"), spread=(a, b, c), rounds=tuple(each.row for each in cylinders)))
     return checks
 
 
-def _gyration(mesh: TriMesh) -> FloatArray:
-    """Return the radii of gyration of a solid about its principal axes, ascending `(3,)` [mm]."""
-    volume, _, inertia = mesh.solid_integrals()
+def _gyration(volume: float, inertia: FloatArray) -> FloatArray:
+    """Return the radii of gyration of a solid about its principal axes, ascending `(3,)` [mm], from its volume and moments per density."""
     return np.asarray(np.sqrt(np.abs(np.linalg.eigvalsh(inertia) / volume)))
 
 

@@ -8,7 +8,6 @@ from typing import Final
 from articad.assembly import Assembly
 from articad.findings import Findings
 from articad.kinematics.joints import Joint, JointType
-from articad.kinematics.mechanism import Mechanism
 from articad_bench.subject import Subject
 
 MOST: Final = 8  # pairs of parts for which the motion is proven once more
@@ -72,5 +71,4 @@ def _between(subject: Subject, joint: Joint, parent: str, child: str) -> Joint:
 
 def _with(assembly: Assembly, joint: Joint, other: Joint) -> Assembly:
     known = assembly.mechanism
-    joints = [other if each is joint else each for each in known.given_joints]
-    return replace(assembly, mechanism=Mechanism(known.parts, known.ground, joints, known.couplings, known.T_ground))
+    return replace(assembly, mechanism=known.changed(joints=[other if each is joint else each for each in known.given_joints]))

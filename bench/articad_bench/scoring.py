@@ -20,7 +20,7 @@ from articad_bench.row import Row
 from articad_bench.shape_checks import same_parts
 from articad_bench.subject import Subject
 from articad_bench.task import Task
-from articad_bench.unsaid import asked_for, format_of, unsaid
+from articad_bench.unsaid import asked_for, unsaid
 
 GIVEN: Final = "_given"  # what is appended to a task's name where the product is that it begins with, as a tool reads it
 SAME: Final = 1e-3  # share by which volumes and places of parts may differ between a product and the same one as a tool reads it
@@ -91,7 +91,8 @@ def stage_name(task: Task, stage: int) -> str:
 
 def _excused(judgements: tuple[Judgement, ...], task: Task, place: Path) -> tuple[Judgement, ...]:
     """Return judgements that say which checks cannot hold because the format of the file cannot state what they need."""
-    reasons = unsaid(format_of(place.suffix), asked_for(task))
+    form = formats.format_of(place)
+    reasons = {} if form is None else unsaid(form.name, asked_for(task))
     return tuple(
         replace(each, measured=f"{each.measured}. {reasons[each.kind]}") if not each.ok and each.kind in reasons else each
         for each in judgements

@@ -9,7 +9,7 @@ from scipy.optimize import linear_sum_assignment
 
 from articad.arrays import FloatArray
 from articad.geometry import TriMesh
-from articad_bench.check import Bounds, Check, Vector, in_words, within
+from articad_bench.check import Bounds, Check, Vector, in_words, widened, within
 from articad_bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
 from articad_bench.subject import Subject
 
@@ -110,10 +110,10 @@ class Wall(Check):
         return f"{in_words(self.number)} parts {in_words(self.mm)} mm thick under {100 * self.share:g} % of their surface"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        shares = {}
+        shares, (low, high) = {}, widened(self.mm)
         for name, mesh in zip(subject.shaped, placed(subject), strict=True):
             thick = wall_thickness(mesh)
-            shares[name] = float(np.mean([within(float(mm), self.mm) for mm in thick]))
+            shares[name] = float(((thick >= low) & (thick <= high)).mean())
         count = sum(share >= self.share for share in shares.values())
         return self.number[0] <= count <= self.number[1], f"{count} ({', '.join(f'{n} {100 * s:.0f} %' for n, s in shares.items())})"
 

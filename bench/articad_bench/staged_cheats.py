@@ -11,7 +11,7 @@ from functools import partial
 from typing import Final
 
 from articad.assembly import Assembly
-from articad.kinematics import Coupling, Joint, Mechanism
+from articad.kinematics import Coupling, Joint
 
 __all__ = ["STAGED", "StagedCheat", "alike", "staged_cheats"]
 
@@ -126,5 +126,4 @@ def _with_couplings(after: Assembly, before: Assembly) -> Assembly:
 
 
 def _moving(after: Assembly, joints: Sequence[Joint], couplings: Sequence[Coupling]) -> Assembly:
-    old = after.mechanism
-    return replace(after, mechanism=Mechanism(old.parts, old.ground, tuple(joints), tuple(couplings), T_ground=old.T_ground))
+    return replace(after, mechanism=after.mechanism.changed(joints=joints, couplings=couplings))

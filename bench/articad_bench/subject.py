@@ -24,7 +24,6 @@ from articad.interference.report import Checks
 from articad.interference.scene import Scene
 from articad.interference.surface import surface_distance, whole_surface
 from articad.kinematics.joints import Joint, JointType
-from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import FeasibleRange
 from articad_bench.solids import boxes_by_faces
 
@@ -66,8 +65,7 @@ class Subject:
 
         def other(assembly: Assembly) -> Assembly:
             known = assembly.mechanism
-            mechanism = Mechanism(known.parts, known.ground, known.given_joints, known.couplings, turn @ known.T_ground)
-            return replace(assembly, mechanism=mechanism)
+            return replace(assembly, mechanism=known.changed(T_ground=turn @ known.T_ground))
 
         return replace(self, assembly=other(self.assembly), before=None if self.before is None else other(self.before))
 
@@ -279,8 +277,7 @@ def _cranked(assembly: Assembly) -> Assembly:
             continue
         if not _is_endless(*crank.limits.lower, *crank.limits.upper):
             continue
-        joints = [replace(joint, driver=joint is crank) for joint in known.given_joints]
-        mechanism = Mechanism(known.parts, known.ground, joints, known.couplings, known.T_ground)
+        mechanism = known.changed(joints=[replace(joint, driver=joint is crank) for joint in known.given_joints])
         if any(drive.joint == crank.name for drive in mechanism.drivers):
             return replace(assembly, mechanism=mechanism)
     return assembly

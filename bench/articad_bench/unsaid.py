@@ -84,13 +84,6 @@ UNSAID: Final = (
     Unsaid("step", "weight", frozenset({"mass"}), "STEP holds no densities."),
 )
 
-_FORMATS: Final = {".urdf": "urdf", ".xml": "mjcf", ".mjcf": "mjcf", ".step": "step", ".stp": "step", ".fcstd": "freecad"}
-
-
-def format_of(suffix: str) -> str:
-    """Return the format that a file's ending says, "" for one that no rule names."""
-    return _FORMATS.get(suffix.lower(), "")
-
 
 def asked_for(task: Task) -> set[Asked]:
     """Return what the checks of a task ask for."""

@@ -4,38 +4,21 @@ from __future__ import annotations
 
 import re
 import zipfile
-from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 from articad.assembly import Assembly
 from articad.export.freecad import write_freecad_alone
-from articad.export.mjcf import write_mjcf
-from articad.export.step import write_step
-from articad.export.urdf import write_urdf
-from articad.importers.freecad import read_freecad
-from articad.importers.mjcf import read_mjcf
-from articad.importers.step import read_step
-from articad.importers.urdf import read_urdf
+from articad.formats import NAMED
 from articad_bench.cheat_run import COSTLY
 from articad_bench.subject import Subject
 from articad_bench.task import Task
 from articad_bench.unsaid import Asked, Format, asked_for, unsaid
 
 FORMS: Final[tuple[Format, ...]] = ("urdf", "mjcf", "freecad", "step")
-_WRITTEN: Final[dict[Format, tuple[Callable[..., Any], dict[str, Any]]]] = {
-    "urdf": (write_urdf, {"collision": "solid"}),
-    "mjcf": (write_mjcf, {"collision": "solid", "actuators": "position"}),
-    "freecad": (write_freecad_alone, {}),
-    "step": (write_step, {}),
-}
-_READ: Final[dict[Format, tuple[Callable[..., Assembly], dict[str, Any]]]] = {
-    "urdf": (read_urdf, {"metadata": False, "fuse": True}),
-    "mjcf": (read_mjcf, {"metadata": False, "fuse": True}),
-    "freecad": (read_freecad, {"metadata": False}),
-    "step": (read_step, {}),
-}
-_SUFFIXES: Final = {".urdf", ".xml", ".FCStd", ".step"}
+_SAID: Final[dict[str, Any]] = {"collision": "solid", "actuators": "position"}
+"""Options of writers; a format ignores those that it does not have."""
 
 
 def refused(task: Task, subject: Subject) -> list[str]:
@@ -46,11 +29,12 @@ def refused(task: Task, subject: Subject) -> list[str]:
 
 def as_file(assembly: Assembly, form: Format, folder: Path) -> Assembly:
     """Return what a file of an assembly states. The assembly must rest at zero: URDF states no other pose."""
-    (write, options), (read, more) = _WRITTEN[form], _READ[form]
-    (file,) = (path for path in write(assembly, **options).write(folder) if path.suffix in _SUFFIXES)
+    known = replace(NAMED[form], writer=write_freecad_alone) if form == "freecad" else NAMED[form]
+    bundle = known.write(assembly, **_SAID)
+    bundle.write(folder)
     if form == "freecad":
-        switch_on(file)
-    return read(file, **more)
+        switch_on(folder / bundle.main)
+    return known.read(folder / bundle.main, metadata=False, fuse=True)
 
 
 def switch_on(file: Path) -> None:

@@ -10,7 +10,6 @@ from typing import Any, Final
 import pytest
 
 from articad.assembly import Assembly
-from articad.kinematics import Mechanism
 from articad_bench.function_checks import Folds
 from articad_bench.heading import is_directed
 from articad_bench.reference import reference
@@ -115,9 +114,8 @@ def test_the_nearest_cheap_answer_fails_where_it_is_cheap(name: str) -> None:
 
 def resting(assembly: Assembly, joint: str, value: float) -> Assembly:
     """Return an assembly of which one joint rests elsewhere."""
-    old = assembly.mechanism
     joints = tuple(replace(each, rest=(value,)) if each.name == joint else each for each in assembly.joints)
-    return replace(assembly, mechanism=Mechanism(old.parts, old.ground, joints, old.couplings, T_ground=old.T_ground))
+    return replace(assembly, mechanism=assembly.mechanism.changed(joints=joints))
 
 
 SUPPORTED = {"brief_desk_wall_folding": ("swing", -math.pi / 2), "brief_trolley_leaf": ("draw", -200.0)}

@@ -36,8 +36,9 @@ EDITED: Final = sorted(file.parent.name for file in SECOND.glob("*/edits.json"))
 
 @cache
 def second(name: str) -> Assembly:
-    """Build a second solution as a reference is built."""
-    return reference(SECOND / name, ALL[name][1].model_copy(update={"reference": ""}))
+    """Build a second solution as a reference is built: of a repair it holds what it changes, and the rest is the given product's."""
+    folder, task = ALL[name]
+    return reference(folder, task.model_copy(update={"reference": str(SECOND / name)}))
 
 
 @pytest.mark.slow

@@ -17,7 +17,8 @@ import numpy as np
 import pytest
 
 from articad.assembly import Assembly
-from articad.connectors.connector import Connector
+from articad.connectors.connector import Connector, Plane
+from articad.connectors.se3 import SE3
 from articad.export.gltf import write_glb
 from articad.export.mjcf import write_mjcf
 from articad.export.sdf import write_sdf
@@ -65,6 +66,17 @@ def solids() -> Iterator[tuple[str, manifold3d.Manifold]]:
         yield f"{name}_turned", solid.rotate((20, 35, 50)).translate((7, -3, 11))
 
 
+def frames() -> Iterator[SE3]:
+    """Yield frames that are given by random axes, mirrored in random planes, moved and drawn between."""
+    rng = np.random.default_rng(3)
+    for _ in range(300):
+        o, z, x, n = rng.normal(size=(4, 3)) * 10.0
+        given = SE3.from_axes(o, z, x - (x * z).sum() / (z * z).sum() * z)
+        plane = Plane(o, n)
+        mirrored = Connector("at", given).mirrored(plane.matrix).frame
+        yield from (SE3.from_axes(o, z), given, mirrored, given @ mirrored.inverse(), SE3.from_axis_angle(n, 0.7, about=o))
+
+
 def digests() -> dict[str, str]:
     """Return the digest of the pieces of each solid, and of the files of an assembly of all."""
     found, parts = {}, []
@@ -85,6 +97,7 @@ def digests() -> dict[str, str]:
                 found[f"{product.name} {write.__name__} {file}"] = hashlib.sha256(written).hexdigest()
         scene = write_glb(product)
         found[f"{product.name} write_glb"] = hashlib.sha256(scene.files[scene.main]).hexdigest()
+    found["frames"] = hashlib.sha256(b"".join(frame.data.tobytes() for frame in frames())).hexdigest()
     loops: Loops
     for loops in ("isaac", "drake"):
         tree = write_urdf(four_bar(), loops=loops)

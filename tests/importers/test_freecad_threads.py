@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -42,7 +43,9 @@ def screw(seed: int) -> Assembly:
     sides = [plate["on"], bolt["on"]]
     if rng.random() < 0.4:
         sides.reverse()
-    limits = "endless" if rng.random() < 0.2 else (rest - rng.uniform(0.1, 20.0), rest + rng.uniform(0.1, 20.0))
+    limits: tuple[float, float] | Literal["endless"] = (
+        "endless" if rng.random() < 0.2 else (rest - rng.uniform(0.1, 20.0), rest + rng.uniform(0.1, 20.0))
+    )
     mate: MateName = "opposed" if rng.random() < 0.5 else "aligned"
     joint = declare.screw("thread", *sides, lead=lead, limits=limits, rest=rest, mate=mate)
     return Assembly.from_parts("screw", parts=[plate, bolt], joints=[joint], ground="plate", T_ground=random_frame(rng, 10.0))
