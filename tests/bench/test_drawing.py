@@ -82,7 +82,14 @@ def test_a_kept_drawing_is_that_of_the_reference(name: str) -> None:
     ((folder, task),) = tasks_in(TASKS, names=[name])
     assert task.drawing is not None
     drawn = pictures_of(reference(folder, task), task.drawing)
-    assert {name: (folder / name).read_bytes() == content for name, content in drawn.items()} == dict.fromkeys(task.images, True)
+    assert sorted(drawn) == sorted(task.images)
+    assert [name for name, content in drawn.items() if differing(content, (folder / name).read_bytes()) > 10] == []
+
+
+def differing(one: bytes, other: bytes) -> int:
+    """Return how many pixels of two pictures differ by more than the rounding of processors and of JPEG: more than 8 of 255."""
+    a, b = (np.asarray(Image.open(io.BytesIO(content)).convert("RGB")).astype(int) for content in (one, other))
+    return int((abs(a - b).max(axis=-1) > 8).sum()) if a.shape == b.shape else max(a.size, b.size)
 
 
 def test_every_task_that_is_asked_by_pictures_has_them() -> None:
