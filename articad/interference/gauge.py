@@ -26,6 +26,7 @@ from articad.interference.meridian import meeting, outline
 from articad.interference.overlap import VOLUME_NOISE_MM3, overlap
 from articad.interference.relations import FitLike
 from articad.interference.scene import Scene
+from articad.interference.seats import clear_of, seats
 from articad.interference.surface import Core, Surface, split_by_radius, surface_distance, whole_surface
 from articad.kinematics.joints import Joint, JointType
 
@@ -33,6 +34,7 @@ STOP_MM = 1e-3  # surfaces this close have met
 _MOST_STEPS = 200  # towards a stop
 _STEPS_OF_ALL = 6  # steps towards a stop with whole surfaces, before only those that face the direction are used
 _ROUNDS = 4  # to find the middle of the free space
+_SEAT_MM = 0.01  # what lies this close to a seat passes over it
 _SLOPE_MM = 1e-4  # shortest travel over which the slope of a distance is computed
 _GRAZING = 0.02  # cosine: a face almost parallel to the direction stops nothing
 _EDGE_SHARE = 0.1  # of `within`: longest edge of triangles that cross it
@@ -241,7 +243,9 @@ class _Room:
         return most
 
     def _is_stopped(self, start: FloatArray, way: FloatArray, before: float) -> bool:
-        """Return whether the surfaces certainly meet within this travel; faster than finding where."""
+        """Return whether the surfaces certainly meet within this travel; faster than finding where. False if they touch before."""
+        if self._gap(start) < STOP_MM:
+            return False
         a, b = self.whole
         T = self.T.copy()
         T[:3, 3] += start + before * way
@@ -296,12 +300,15 @@ class _Room:
         return self._gaps[key]
 
     def _front(self, way: FloatArray) -> tuple[Surface, Surface]:
-        """Return the triangles of both surfaces that face each other along a direction."""
+        """Return the triangles of both surfaces that face each other along a direction, clear of the planes in which both sit on each other."""
         key = way.tobytes()
         if key not in self._facing:
             a, b = self.whole
-            mine, theirs = _normals(a.corners) @ way < -_GRAZING, _normals(b.corners) @ (self.T[:3, :3].T @ way) > _GRAZING
-            self._facing[key] = Surface(a.corners[mine]), Surface(b.corners[theirs])
+            R, t = self.T[:3, :3], self.T[:3, 3]
+            mine, theirs = _normals(a.corners) @ way < -_GRAZING, _normals(b.corners) @ (R.T @ way) > _GRAZING
+            planes = seats(a.corners, b.corners @ R.T + t, way, STOP_MM)
+            planes = np.column_stack([planes[:, :3] @ R, planes[:, 3] - planes[:, :3] @ t])  # in the frame of b
+            self._facing[key] = Surface(a.corners[mine]), Surface(clear_of(b.corners[theirs], planes, _SEAT_MM))
         return self._facing[key]
 
 
