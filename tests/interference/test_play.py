@@ -112,14 +112,14 @@ def test_edges_in_the_seat_of_a_part_stop_nothing(seed: int) -> None:
     radius, clearance, high = rng.uniform(2, 4), rng.uniform(0.3, 1.0), rng.uniform(3, 8)
     wider = rng.uniform(0.0, 0.8) if seed % 3 else 0.0  # a bore that is long across the strap
     beyond, cube = rng.uniform(0.2, 0.8) * clearance, m3.Manifold.cube
-    bracket = cube([60, 60, 10], True).translate([0, 0, -5])
+    bracket = cube([60, 60, 10], center=True).translate([0, 0, -5])
     if seed % 2:
-        bracket += cube([60, 60, 10], True).translate([0, 0, high + 5])
-    bracket -= cube([30, 10, 3], True).translate([0, 1 + beyond, 0])  # its rim lies `beyond` from the strap's side
-    bracket += m3.Manifold.cylinder(40, radius, radius, 96, True)
-    bore = m3.Manifold.cylinder(40, radius + clearance, radius + clearance, 96, True)
+        bracket += cube([60, 60, 10], center=True).translate([0, 0, high + 5])
+    bracket -= cube([30, 10, 3], center=True).translate([0, 1 + beyond, 0])  # its rim lies `beyond` from the strap's side
+    bracket += m3.Manifold.cylinder(40, radius, radius, 96, center=True)
+    bore = m3.Manifold.cylinder(40, radius + clearance, radius + clearance, 96, center=True)
     long = m3.Manifold.batch_hull([bore.translate([0, side * wider, 0]) for side in (-1, 1)])
-    strap = cube([44, 12, high], True).translate([0, 0, high / 2]) - long
+    strap = cube([44, 12, high], center=True).translate([0, 0, high / 2]) - long
     found = play_of(rng, "revolute", manifold_mesh(bracket), manifold_mesh(strap))
 
     assert found is not None
