@@ -179,7 +179,7 @@ def test_a_file_too_large_for_the_checker_is_not_called_refuted(
 ) -> None:
     record_certificate(run, chest.certify(check=False))
     assert cli.main(["verify-certificate", str(run.path)]) == 0
-    monkeypatch.setattr("articad.certificates.verifier.BYTES", 1000)
+    monkeypatch.setattr("articad.certificates.verifier_files.TEXT", 1000)
     assert cli.main(["verify-certificate", str(run.path)]) == 1
     said = capsys.readouterr().out
     assert "certificate.json: not checked." in said

@@ -152,7 +152,7 @@ OWN = {
     "agents/provider.py": "/proc of its own process",
     "batches/items.py": "hashes of what it has just written",
     "batches/worker.py": "its own output",
-    "certificates/verifier.py": "a program for itself, which opens files with the same checks",
+    "certificates/verifier_files.py": "a part of a program for itself, which opens files with the same checks",
     "cli.py": "/dev/null",
     "commands/remembering.py": "the package's own examples",
     "commands/showing.py": "the package's own examples; the browser",

@@ -25,7 +25,8 @@ from articad.certificates.linkage import DriverTrack, LinkageProver
 from articad.certificates.proof import Proof, Prover, beyond
 from articad.certificates.ranges import driven_range, proven_freedoms
 from articad.certificates.tolerance import Tolerances, is_still
-from articad.certificates.verifier import PROOF, Checker, Refuted, widened
+from articad.certificates.verifier import PROOF, Checker
+from articad.certificates.verifier_files import Refuted, widened
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError

@@ -1,10 +1,11 @@
 """Check a motion certificate without trusting it: the checker behind `articad verify-certificate`.
 
-The checker is independent of the prover and uses NumPy alone; `verifier_tolerance.py` is a part of it. A certificate claims that parts stay apart while joints move within
+The checker is independent of the prover and uses NumPy alone; `verifier_files.py` and `verifier_tolerance.py` are parts of it. A certificate claims that parts stay apart while joints move within
 ranges. A proof file says how to cut surfaces and ranges, and which direction separates each two pieces. The checker trusts none of it
 and searches for nothing. It computes every inequality again from meshes and joints, and refutes a proof that omits a piece, a range or a
 pair. The parts of the check:
 
+- `verifier_files`: the files are read within bounds of size and memory.
 - `Checker.check_joints`: the mechanism is well formed, and joints of loops and couplings are declared as such.
 - `Checker.closure`, `enclosures`, `held`, `join`: followers of drivers have one solution in a tube about a quadratic curve.
 - `Checker.prove`, `boxes`, `follow`, `apart`, `motion`: each two pieces of surface are further apart than the motion can bring them.
@@ -16,22 +17,18 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import io
 import itertools
 import json
 import math
-import os
-import stat
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from articad.certificates.verifier_files import Refuted, arrays_in, need, text
 from articad.certificates.verifier_tolerance import Tolerance
 
-BYTES = 2**29  # largest size of a file
-UNREAD = f"is larger than {BYTES} bytes"  # why a file is not read: this refutes nothing
 PROOF = "_proof"  # no part has this name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
 HALF = 0.5  # largest deviation of entries of a rotation by which a loop may be open: it excludes half a turn, even with 1 rad more
@@ -48,36 +45,24 @@ LEBESGUE, QUINTIC = 1.8, 1 / 960  # ... Lebesgue constant is below 1.8, and whos
 # from values at the nodes to Bernstein coefficients
 BERNSTEIN = np.linalg.inv([[math.comb(4, j) * (1 + t) ** j * (1 - t) ** (4 - j) / 16 for j in range(5)] for t in NODES])
 LARGEST = 1e7  # mm or rad: beyond it, rounding of numbers matters
-TYPES = {"f": "f8", "i": "i8", "u": "i8", "U": "U"}  # of arrays, by kind: short numbers overflow, and complex ones have no order
 SWUNG = -7  # a piece stays inside a cone about a ball's axis however it swings, and the other one outside
 LEAN, ROUND, OUTSIDE = -6, -5, -4  # pieces differ in angle from a ball's axis, or in radius; a box lies outside the cone of a ball
 BESIDE = np.radians([0, *(sign * 2.0**k for sign in (-1, 1) for k in range(-1, 6))])  # of the cones that keep a swing apart
 CUT = -3  # and -2, -1: the piece of a, of b, or the box is cut
 
 
-class Refuted(Exception):  # noqa: N818 - not an error of the program
-    """The reason why the checker rejects a certificate."""
-
-
-def need(condition: Any, reason: str) -> None:
-    """Refute the certificate unless a condition holds."""
-    if not condition:
-        raise Refuted(reason)
-
-
 def verify_file(file: Path, folder: Path) -> list[str]:
     """Return the reasons why a certificate file is refuted, an empty list if it is accepted.
+
+    Files larger than a bound are neither: the reason then begins with `UNREAD`. Memory is bounded whatever the files hold.
 
     Args:
         file: The certificate.
         folder: Directory with `<part>.npz` for every part, and the proof.
     """
     try:
-        certificate, arrays = json.loads(content(file)), dict[str, Any]()
-        for name in [*certificate["meshes"], PROOF]:
-            need(Path(name).name == name, "a mesh has a name that is not a file name")
-            with io.BytesIO(content(folder / f"{name}.npz")) as stream, np.load(stream, allow_pickle=False) as found:
-                arrays[name] = {key: widened(array) for key, array in found.items()}
+        certificate = json.loads(text(file))
+        arrays = arrays_in(folder, [*certificate["meshes"], PROOF])
         left = sorted({found.stem for found in folder.glob("*.npz")} - set(arrays))
         need(not left, f"it omits {', '.join(left)}")
         Checker(certificate, arrays).check()
@@ -86,20 +71,6 @@ def verify_file(file: Path, folder: Path) -> list[str]:
     except Exception as error:  # noqa: BLE001 - a certificate that breaks its checker in any way proves nothing
         return [f"it cannot be read: {error!r}"[:500]]
     return []
-
-
-def content(file: Path) -> bytes:
-    """Return the bytes of a regular file; refuse a pipe or a device, which might never end."""
-    handle = os.open(file, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    with os.fdopen(handle, "rb") as stream:
-        need(stat.S_ISREG(os.fstat(handle).st_mode), f"{file.name} is not a file")
-        need(os.fstat(handle).st_size <= BYTES, f"{file.name} {UNREAD}")
-        return stream.read(BYTES)
-
-
-def widened(array: Any) -> Any:
-    """Return an array of 64-bit numbers, which do not overflow here; refuse other kinds of arrays."""
-    return array.astype(TYPES[array.dtype.kind])
 
 
 def digest(vertices: Any, triangles: Any) -> str:

@@ -7,7 +7,6 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from articad.bounds import TEXT_BYTES, TEXT_VALUES, values_in
 from articad.commands.command import argument, command
 from articad.commands.options import amount, names
 from articad.files import is_file, read_file
@@ -71,7 +70,8 @@ def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument("--meshes", metavar="DIR", help="its meshes, <part>.npz (the folder certificate/ beside it)"),
 )
 def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.certificates.verifier import UNREAD, verify_file
+    from articad.certificates.verifier import verify_file
+    from articad.certificates.verifier_files import TEXT, UNREAD
     from articad.errors import ReadError
 
     named = Path(options.file)
@@ -84,27 +84,16 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
             else "Name a run, or the certificate.json that `articad certify RUN` wrote into it."
         )
         raise ReadError.at(str(file), message, hint, said=message)
-    if reason := _too_large(file):
-        raise ReadError.at(
-            str(file), f"{file} is not checked: {reason}.", "Prove some joints at a time: `articad certify RUN --joints A,B`."
-        )
     with terminal.progress("Checking"):
         faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
-    stated = [] if faults else _stated(json.loads(read_file(file, TEXT_BYTES)))
-    for line in [*faults, *stated]:
+    stated = [] if faults else _stated(json.loads(read_file(file, TEXT)))
+    is_unread = any(fault.startswith(UNREAD) for fault in faults)
+    advice = ["Prove some joints at a time: articad certify RUN --joints A,B"] if is_unread else []
+    for line in [*faults, *stated, *advice]:
         terminal.say(f"  {line}")
-    verdict = "accepted" if not faults else "not checked" if faults[0].endswith(UNREAD) else "refuted"
+    verdict = "accepted" if not faults else "not checked" if is_unread else "refuted"
     terminal.say(f"{file}: {verdict}.")
     return {"schema": "articad.verification/1", "ok": not faults, "file": str(file), "faults": faults, "stated": stated, "findings": []}
-
-
-def _too_large(file: Path) -> str:
-    """Return why the text of a certificate is not parsed; empty if it is."""
-    try:
-        values = values_in(read_file(file, TEXT_BYTES))
-    except OSError as error:
-        return str(error.strerror)
-    return f"it has more than {TEXT_VALUES} values" if values > TEXT_VALUES else ""
 
 
 def _stated(certificate: Report) -> list[str]:

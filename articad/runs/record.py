@@ -11,8 +11,10 @@ from typing import Any, Final
 from articad import formats
 from articad.aliases import Progress
 from articad.assembly import Assembly
+from articad.bounds import values_in
 from articad.certificates.certificate import Certificate
-from articad.certificates.verifier import BYTES, verify_file
+from articad.certificates.verifier import verify_file
+from articad.certificates.verifier_files import BYTES, ROOM, TEXT, VALUES, room
 from articad.connectors.connector import Connector
 from articad.errors import ReadError
 from articad.findings import Finding, Findings
@@ -107,7 +109,7 @@ def record_page(run: Run, assembly: Assembly) -> Path:
 def record_certificate(run: Run, certificate: Certificate) -> Report:
     """Save a certificate and its meshes; return its report. With a file that the independent checker does not read, it is not ok."""
     report, meshes = certificate.to_json(), certificate.mesh_files()
-    if certificate.ok and (reason := _unread(json.dumps(report).encode(), meshes)):
+    if certificate.ok and (reason := _unread(certificate, json.dumps(report).encode(), meshes)):
         certificate = _not_checked(certificate, reason)
         report = certificate.to_json()
     _save_certificate(run, certificate, report, meshes)
@@ -130,7 +132,7 @@ def record_checked(run: Run, certificate: Certificate) -> Report:
     """
     report, meshes = certificate.to_json(), certificate.mesh_files()
     text = json.dumps(report).encode()
-    unread = _unread(text, meshes)
+    unread = _unread(certificate, text, meshes)
     faults = [unread] if unread else _faults(text, meshes)
     if faults and certificate.ok:
         certificate = _not_checked(certificate, unread) if unread else certificate.refuted(faults[0])
@@ -139,10 +141,19 @@ def record_checked(run: Run, certificate: Certificate) -> Report:
     return {"ok": not faults, "checked": not unread, "faults": faults}
 
 
-def _unread(report: bytes, meshes: Mapping[str, bytes]) -> str:
+def _unread(certificate: Certificate, report: bytes, files: Mapping[str, bytes]) -> str:
     """Return which file of a certificate is larger than its checker reads; empty if none is."""
-    size, name = max((len(content), name) for name, content in {"certificate.json": report, **meshes}.items())
-    return f"{name} has {size} bytes, more than the {BYTES} that it reads" if size > BYTES else ""
+    size, name = max((len(content), name) for name, content in files.items())
+    if size > BYTES:
+        return f"{name} has {size} bytes, more than the {BYTES} that it reads"
+    if len(report) > TEXT:
+        return f"certificate.json has {len(report)} bytes, more than the {TEXT} that it reads"
+    if (values := values_in(report)) > VALUES:
+        return f"certificate.json has {values} values, more than the {VALUES} that it reads"
+    size = sum(
+        map(room, [*certificate.proof.values(), *(of for mesh in certificate.meshes.values() for of in (mesh.vertices, mesh.triangles))])
+    )
+    return f"the proof has {size} bytes of numbers, more than the {ROOM} that it reads" if size > ROOM else ""
 
 
 def _not_checked(certificate: Certificate, reason: str) -> Certificate:

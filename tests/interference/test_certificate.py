@@ -9,6 +9,8 @@ import json
 import math
 import sys
 import tokenize
+import tracemalloc
+import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -18,7 +20,7 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
-from articad.certificates import verifier, verifier_tolerance
+from articad.certificates import verifier, verifier_files, verifier_tolerance
 from articad.certificates.certificate import Certificate, certify
 from articad.certificates.clearing import shortest_between
 from articad.certificates.ranges import PROVEN
@@ -837,14 +839,16 @@ def test_a_wall_along_an_axis_is_for_the_checker_as_far_from_it_as_its_edges(tur
 MOST_LINES = 640  # of code: what a person can read
 
 
-@pytest.mark.parametrize(("module", "most"), [(verifier, MOST_LINES), (verifier_tolerance, MOST_LINES // 8)])
+@pytest.mark.parametrize(
+    ("module", "most"), [(verifier, MOST_LINES), (verifier_files, MOST_LINES // 8), (verifier_tolerance, MOST_LINES // 8)]
+)
 def test_the_checker_is_short_and_knows_only_numpy(module: ModuleType, most: int) -> None:
     assert module.__file__ is not None
     source = Path(module.__file__).read_text()
     tree = ast.parse(source)
     imported = {alias.name.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
     imported |= {str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    imported -= {verifier_tolerance.__name__} if module is verifier else set()
+    imported -= {verifier_files.__name__, verifier_tolerance.__name__} if module is verifier else set()
     assert imported <= sys.stdlib_module_names | {"numpy", "collections.abc"}
     documentation: set[int] = set()
     for node in ast.walk(tree):
@@ -921,3 +925,70 @@ def test_a_mesh_that_is_none_refutes_its_certificate(tmp_path: Path, content: by
     (tmp_path / "certificate.json").write_bytes(b'{"meshes": {"lid": {"sha256": ""}}}')
     (fault,) = verify_file(tmp_path / "certificate.json", tmp_path)
     assert fault.startswith("it cannot be read")
+
+
+def packed(**members: bytes) -> bytes:
+    """A compressed archive with anything as its arrays."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in members.items():
+            archive.writestr(f"{name}.npy", content)
+    return stream.getvalue()
+
+
+def array(kind: str, count: int, stated: int | None = None) -> bytes:
+    """An array of zeros, with the number of elements that its header states."""
+    stream = io.BytesIO()
+    np.lib.format.write_array_header_1_0(stream, {"descr": kind, "fortran_order": False, "shape": (stated or count,)})
+    return stream.getvalue() + bytes(count * np.dtype(kind).itemsize)
+
+
+def understated(content: bytes) -> bytes:
+    """The same archive, which states that its first member has 100 bytes."""
+    entry = content.index(b"PK\x01\x02") + 24
+    return content[:entry] + (100).to_bytes(4, "little") + content[entry + 4 :]
+
+
+MANY = 20_000_000  # bytes, which the bounds of this test do not admit
+LID = b'{"meshes": {"lid": {}}}'
+BOMBS: dict[str, tuple[bytes, dict[str, bytes]]] = {
+    "long text": (b" " * MANY, {}),
+    "values": (b'{"meshes": [' + b"[]," * 1_000_000 + b"1]}", {}),
+    "packed": (LID, {"lid": packed(a=array("<f8", MANY // 8))}),
+    "short numbers": (LID, {"lid": packed(a=array("|i1", 900_000))}),
+    "several arrays": (LID, {"lid": packed(**{f"a{k}": array("<f8", 100_000) for k in range(8)})}),
+    "several files": (
+        b'{"meshes": {"a": {}, "b": {}, "c": {}, "d": {}}}',
+        {name: packed(x=array("<f8", 50_000)) for name in ("a", "b", "c", "d", PROOF)},
+    ),
+    "names": (LID, {"lid": b"PK\x01\x02" * 10_000}),
+}
+PACKED_LIES: dict[str, tuple[bytes, dict[str, bytes]]] = {
+    "a size that is not so": (LID, {"lid": understated(packed(a=array("<f8", MANY // 8)))}),
+    "no array": (LID, {"lid": understated(packed(a=bytes(MANY)))}),
+    "a header without end": (LID, {"lid": understated(packed(a=b"\x93NUMPY\x02\x00" + b"\xff\xff\xff\x7f" + bytes(MANY)))}),
+    "more elements than there are": (LID, {"lid": packed(a=array("<f8", 10, 10**9))}),
+}
+
+
+@pytest.mark.parametrize(
+    ("certificate", "files", "is_told"),
+    [(*each, True) for each in BOMBS.values()] + [(*each, False) for each in PACKED_LIES.values()],
+    ids=[*BOMBS, *PACKED_LIES],
+)
+def test_whoever_calls_the_checker_it_takes_bounded_memory(
+    certificate: bytes, files: dict[str, bytes], is_told: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, most in {"BYTES": 2_000_000, "TEXT": 4_000_000, "VALUES": 1_000_000, "ARRAYS": 1000, "ROOM": 2_000_000}.items():
+        monkeypatch.setattr(verifier_files, name, most)
+    (tmp_path / "certificate.json").write_bytes(certificate)
+    for name, content in files.items():
+        (tmp_path / f"{name}.npz").write_bytes(content)
+    tracemalloc.start()
+    try:
+        (fault,) = verify_file(tmp_path / "certificate.json", tmp_path)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert fault.startswith(verifier_files.UNREAD if is_told else ("it cannot be read", "an array is not whole")), fault
+    assert peak < 12_000_000

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from articad.certificates.certificate import Certificate, certify, mechanism_json
-from articad.certificates.verifier import PROOF, Checker, Refuted
+from articad.certificates.verifier import PROOF, Checker
+from articad.certificates.verifier_files import Refuted
 from articad.geometry import TriMesh, box, cylinder, sphere
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mechanism import Mechanism
