@@ -24,7 +24,8 @@ from articad.arrays import FloatArray, IntArray
 from articad.certificates.clearing import Boxes, CannotCut
 from articad.certificates.proof import Proof, Prover, Shrink
 from articad.certificates.spread import Spread
-from articad.certificates.verifier import Checker, Refuted, joined
+from articad.certificates.verifier import Checker, joined
+from articad.certificates.verifier_files import Refuted
 from articad.connectors.se3 import SE3
 from articad.interference.freedoms import Freedom, scattered
 from articad.interference.motion import Chain, Route
