@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import traceback
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -212,6 +213,33 @@ def without(record: Any, path: tuple[Any, ...]) -> Any:
     else:
         copy[path[0]] = without(copy[path[0]], path[1:])
     return copy
+
+
+@pytest.mark.parametrize("name", ["request.json", "plan.json", "assembly.json", *RECORDS])
+@pytest.mark.parametrize("content", [b"\xff", b"{", b"[]", b"{}"], ids=["bytes", "no JSON", "a list", "empty"])
+def test_each_error_of_a_record_says_what_to_do(name: str, content: bytes, folder: Path, assembly: Assembly) -> None:
+    (folder / name).write_bytes(content)
+    found = [finding for read in readers(assembly).values() for finding in findings(read, folder)]
+    hints = {finding.hint for finding in found if finding.code in {"E_READ", "E_RUN"}}
+    assert all(re.search(r"articad (certify|export|build) |undamaged copy|Save it as", hint) for hint in hints), hints
+    assert hints or name in {"plan.json", "parts/link0/part.json"} or content == b"{}"
+
+
+def findings(read: Callable[[Run], object], folder: Path) -> list[Finding]:
+    """Return what the error of a reader says; nothing if it reads."""
+    try:
+        read(Run.view(folder))
+    except ArticadError as error:
+        return [*error.findings]
+    return []
+
+
+def test_a_page_tries_a_bounded_number_of_overlaps_that_somebody_states(assembly: Assembly, monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = Mock(return_value=[])
+    monkeypatch.setattr("articad.report.overlaps.overlap_meshes", tried)
+    drawn_overlaps(assembly, {"pairs": [_PAIR | {"pose": {"hinge1": k / 1e5}} for k in range(1000)]})
+    assert 16 <= tried.call_count <= 32
+    assert drawn_overlaps(assembly, {"pairs": [_PAIR | {"pose": {"hinge1": 1e9}}]}) == []
 
 
 def test_a_picture_that_is_named_many_times_is_read_not_even_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -224,6 +224,7 @@ NOT_THERE = """
 check X
 build X
 show X
+watch X --no-browser
 sim X
 audit X
 certify X

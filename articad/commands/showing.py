@@ -32,22 +32,24 @@ _BROWSER = argument("--no-browser", dest="browser", action="store_false", help="
 )
 def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
     import webbrowser
+    from dataclasses import replace
 
     from articad.export.names import file_name
     from articad.processes import scratch
     from articad.report import Documents, report_page
+    from articad.report.sections import provenance
     from articad.runs.record import assembly_of, documents_of, record_page
     from articad.runs.run import Run
 
-    claims = False
+    claims = ""
     if (Path(options.target) / "request.json").is_file():
         with Run.view(options.target) as run, terminal.progress("Reading") as tell:
-            assembly, documents = assembly_of(run, progress=tell), documents_of(run)
-        claims = documents.certificate is not None
+            assembly, documents = assembly_of(run, progress=tell), replace(documents_of(run), repeated=True)
+        claims = provenance(documents)
         with terminal.progress("Writing"):
             if options.out is None:
                 with Run.open(options.target) as run:
-                    page = record_page(run, assembly)
+                    page = record_page(run, assembly, repeated=True)
             else:
                 page = Path(options.out)
                 scratch.write(page, report_page(assembly, documents).encode())
@@ -59,9 +61,7 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
         scratch.write(page, text.encode())
     terminal.say(str(page))
     if claims:
-        terminal.say(
-            f"The page repeats what the run's certificate states. To check the certificate: articad verify-certificate {options.target}"
-        )
+        terminal.say(claims.replace("RUN", str(options.target)))
     if options.browser and not webbrowser.open(page.resolve().as_uri()):
         terminal.say("No browser could be started; open the file yourself.")
     return {"schema": "articad.page/1", "ok": True, "file": str(page), "findings": []}
@@ -123,7 +123,11 @@ def _watch(options: argparse.Namespace, terminal: Terminal) -> Report:
     import webbrowser
 
     from articad.commands.watching import PageServer, watch
+    from articad.errors import ReadError
 
+    if not Path(options.plan).exists():
+        hint = f"Correct the name, or create a product: articad new {options.plan}"
+        raise ReadError.at(options.plan, f"There is no folder {options.plan}.", hint)
     with PageServer(options.port) as server:
         terminal.say(f"{server.address}  (Ctrl-C to stop)")
         terminal.out.flush()

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from articad.aliases import Json
 from articad.assembly import Assembly
+from articad.errors import ArticadError
 from articad.interference.overlap_meshes import overlap_meshes
 from articad.report.drawing import drawn_mesh
 
 _MOST = 16  # overlaps that are drawn; the tables list all of them
+_TRIED = 2 * _MOST  # pairs whose common solids are computed: somebody's reports may name any number that do not overlap
 _TRIANGLES = 4000  # of one overlap
 
 
@@ -25,14 +27,19 @@ def drawn_overlaps(assembly: Assembly, *reports: Json | None) -> list[Json]:
     ]
     drivers = {driver.name for driver in assembly.drivers}
     found: list[Json] = []
-    seen = set()
+    seen: set[tuple[object, ...]] = set()
     for pair in sorted(wrong, key=lambda pair: -(pair["depth_mm"] or 0.0)):
         pose = {name: value for name, value in (pair.get("pose") or {}).items() if name in drivers}
         key = (*pair["parts"], *sorted(pose.items()))
-        if key in seen or len(found) == _MOST:
+        if key in seen:
             continue
+        if len(found) >= _MOST or len(seen) == _TRIED:
+            break
         seen.add(key)
-        placed = assembly.poses(assembly.q(**pose))
+        try:
+            placed = assembly.poses(assembly.q(**pose))
+        except ArticadError:  # a pose that the product cannot take: somebody has changed it, or the report
+            continue
         poses = {name: placed[index[name]] for name in pair["parts"]}
         numbers = [index[name] for name in pair["parts"]]
         meshes = overlap_meshes({name: assembly.parts[name] for name in pair["parts"]}, poses)

@@ -37,6 +37,7 @@ class Documents:
         replies: Records `articad.llm/1`, in reading order.
         plan: The plan's text.
         files: Paths beside the page, to be linked.
+        repeated: Whether the reports are read from the files of a run that anybody may have written, and nothing was checked for the page.
     """
 
     prompt: str = ""
@@ -49,6 +50,12 @@ class Documents:
     replies: Sequence[Json] = ()
     plan: str | None = None
     files: Sequence[str] = ()
+    repeated: bool = False
+
+    @property
+    def is_repeating(self) -> bool:
+        """Whether any statement of the page is only repeated from somebody's files."""
+        return self.repeated and any(report is not None for report in (self.checks, self.certificate, self.verdict))
 
     @property
     def findings(self) -> list[Json]:
@@ -64,6 +71,7 @@ def all_sections(assembly: Assembly, documents: Documents) -> str:
     findings = [*documents.findings, *(finding.to_json() for finding in assembly.findings)]
     return "".join(
         [
+            f'<p class="quiet">{escape(provenance(documents))}</p>' if documents.is_repeating else "",
             _section("What was asked for", f"<p>{escape(documents.prompt)}</p>" if documents.prompt else ""),
             _section(f"Findings ({len(findings)})", _findings(findings, known), opened=bool(findings)),
             _section("Audit", _audit(documents.audit), opened=True),
@@ -82,9 +90,18 @@ def all_sections(assembly: Assembly, documents: Documents) -> str:
     )
 
 
+def provenance(documents: Documents) -> str:
+    """Return the sentence that says of a page that it repeats what a run states, and how to check that; empty if it repeats nothing."""
+    if not documents.is_repeating:
+        return ""
+    check = "articad check RUN" + (" and articad verify-certificate RUN" if documents.certificate is not None else "")
+    return f"Checks, proofs and verdicts are repeated from the files of the run, whoever wrote them; none was checked for this page. To check them: {check}."
+
+
 def badges(documents: Documents, *, moves: bool = True) -> str:
     """Return what is proven, sampled or not checked, in a few words each; `moves`: whether any joint can move."""
-    told = [(each.badge, each.state, each.sentence) for each in statements(documents.checks, documents.certificate, moves=moves)]
+    told = [("repeated, not checked now", "quiet", provenance(documents))] if documents.is_repeating else []
+    told += [(each.badge, each.state, each.sentence) for each in statements(documents.checks, documents.certificate, moves=moves)]
     for report, good, bad in (
         (documents.verdict, "accepted", "not accepted"),
         (documents.audit, "audit passed", "audit failed"),
@@ -111,6 +128,7 @@ def summary(assembly: Assembly, documents: Documents) -> str:
         [
             f"{assembly.name} has {len(assembly.parts)} parts. What moves: {moves or 'nothing'}.",
             *told,
+            *filter(None, [provenance(documents)]),
             f"Findings: {listed or 'none'}.",
         ]
     )

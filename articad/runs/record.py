@@ -101,9 +101,9 @@ def documents_of(run: Run) -> Documents:
     )
 
 
-def record_page(run: Run, assembly: Assembly) -> Path:
-    """Save the HTML page of a run; return its file."""
-    return run.save_page(report_page(assembly, documents_of(run)))
+def record_page(run: Run, assembly: Assembly, *, repeated: bool = False) -> Path:
+    """Save the HTML page of a run; return its file. `repeated`: whether anybody may have written what the run states."""
+    return run.save_page(report_page(assembly, replace(documents_of(run), repeated=repeated)))
 
 
 def record_certificate(run: Run, certificate: Certificate) -> Report:

@@ -84,6 +84,7 @@ _JSON_BYTES: Final = 64 << 20  # of one record; those of a product of 2,000 part
 _JSON_VALUES: Final = 4_000_000  # of all records that one view of a run has read: each takes up to 80 bytes
 _LINE_BYTES: Final = 1 << 20  # of one line of the trace
 _LINES: Final = 1_000_000  # of the trace
+_NAME_A_PICTURE = "Name a picture that is a file of yours, in PNG, JPEG, GIF or WebP."
 _IMAGE_KINDS = {b"\x89PNG\r\n\x1a\n": ("image/png", "png"), b"\xff\xd8\xff": ("image/jpeg", "jpg"), b"GIF8": ("image/gif", "gif")}
 
 
@@ -117,14 +118,15 @@ class UserImage:
         try:
             content = source if isinstance(source, bytes) else read_file(source, _IMAGE_LIMIT, root=root)
         except OSError as error:
-            raise _unreadable(name, f"Cannot read {name}: {error.strerror}.") from error
+            raise _unreadable(name, f"Cannot read {name}: {error.strerror}.", _NAME_A_PICTURE) from error
         if len(content) > _IMAGE_LIMIT:
-            raise _unreadable(name, f"{name} has {len(content) / 2**20:.0f} MiB; at most {_IMAGE_LIMIT // 2**20} are accepted.")
+            message = f"{name} has {len(content) / 2**20:.0f} MiB; at most {_IMAGE_LIMIT // 2**20} are accepted."
+            raise _unreadable(name, message, "Make the picture smaller: models see no more than some 2000 pixels across.")
         kinds = [kind for start, kind in _IMAGE_KINDS.items() if content.startswith(start)]
         if content[:4] == b"RIFF" and content[8:12] == b"WEBP":
             kinds = [("image/webp", "webp")]
         if not kinds:
-            raise _unreadable(name, f"{name} is not a PNG, JPEG, GIF or WebP picture.")
+            raise _unreadable(name, f"{name} is not a PNG, JPEG, GIF or WebP picture.", "Convert it to PNG.")
         return cls(content, *kinds[0], part=part)
 
     @property
@@ -150,7 +152,7 @@ class RunRequest:
     def __post_init__(self) -> None:
         if (size := sum(len(image.content) for image in self.images)) > _IMAGES_LIMIT:
             told = f"The pictures have {size / 2**20:.0f} MiB together; at most {_IMAGES_LIMIT // 2**20} are accepted."
-            raise _unreadable("images", told)
+            raise _unreadable("images", told, "Send fewer or smaller pictures.")
 
     def to_json(self, version: str) -> Json:
         """Return `request.json`; `version` is that of articad."""
@@ -326,7 +328,9 @@ class Run:
         try:
             return None if content is None else content.decode()
         except UnicodeDecodeError as error:
-            raise _unreadable(str(self.path / _PLAN), f"{self.path / _PLAN} is not UTF-8: {error.reason}.") from error
+            place = self.path / _PLAN
+            hint = f"Save it as UTF-8, or copy the last version that is in {self.path / _PLANS} over it."
+            raise _unreadable(str(place), f"{place} is not UTF-8: {error.reason}.", hint) from error
 
     def save_plan(self, text: str, version: int) -> None:
         """Save a version of the plan, counted from 0, and make it the current one."""
@@ -485,7 +489,8 @@ class Run:
             report = self._read_json(str(file.relative_to(self.path)), "losses") or {}
             main = next(iter(report.get("files", {})), "")
             if Path(main).is_absolute() or ".." in Path(main).parts:
-                raise _unreadable(str(file), f"{file} names a file outside its folder: {main[:100]!r}.")
+                message = f"{file} names a file outside its folder: {main[:100]!r}."
+                raise _unreadable(str(file), message, f"Do not use {file.parent}: remove it, and export again.")
             reports[file.parent.name] = report | {"folder": str(file.parent), "main": str(file.parent / main)}
         return reports
 
@@ -543,11 +548,22 @@ class Run:
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
-            raise _unreadable(str(self.path / name), f"Cannot read {self.path / name}: {error.strerror}.") from error
+            raise self._unreadable(name, f"Cannot read {self.path / name}: {error.strerror}.") from error
 
     def _sha256(self, file: Path) -> str:
         content = self._read(file.relative_to(self.path).as_posix())
         return hashlib.sha256(content or b"").hexdigest()
+
+    def _unreadable(self, name: str, message: str) -> ReadError:
+        """Return the error of a record of the run, with the command that writes it again if there is one."""
+        folder = Path(name).parts[:2]
+        if name == _CERTIFICATE:
+            hint = f"Write it again: articad certify {self.path}"
+        elif folder[0] == _EXPORT:
+            hint = f"Remove {self.path.joinpath(*folder)}, and export again: articad export {self.path} --to {folder[-1]}"
+        else:
+            hint = f"Take an undamaged copy of {self.path}, or make the run again in a new folder with --out."
+        return _unreadable(str(self.path / name), message, hint)
 
     def _read_json(self, name: str, form: str | None = None) -> Json | None:
         """Return a record, or None if there is none; `form` is its name in `FORMS`."""
@@ -557,15 +573,15 @@ class Run:
         place = self.path / name
         self._weights[name] = values_in(content)
         if sum(self._weights.values()) > _JSON_VALUES:
-            raise _unreadable(str(place), f"{place} and the records that were read before have more than {_JSON_VALUES} values.")
+            raise self._unreadable(name, f"{place} and the records that were read before have more than {_JSON_VALUES} values.")
         try:
             value = json.loads(content, parse_constant=_no_number)
         except (ValueError, RecursionError) as error:
-            raise _unreadable(str(place), f"{place} is not JSON: {error}.") from error
+            raise self._unreadable(name, f"{place} is not JSON: {error}.") from error
         if not isinstance(value, dict):
-            raise _unreadable(str(place), f"{place} is not a JSON object.")
+            raise self._unreadable(name, f"{place} is not a JSON object.")
         if form is not None and (wrong := misfit_of(value, form)):
-            raise _unreadable(str(place), f"{place} is no record of articad: {wrong} is missing or is something else.")
+            raise self._unreadable(name, f"{place} is no record of articad: {wrong} is missing or is something else.")
         return value
 
     def _write_json(self, name: str, value: Json) -> None:
@@ -741,7 +757,8 @@ def _require_plain(path: Path) -> None:
         except FileNotFoundError:  # another process works in it, and has just renamed this
             continue
         except OSError as error:
-            raise _unreadable(str(folder), f"Cannot read {folder}: {error.strerror}.") from error
+            hint = f"Allow yourself to read it, or copy the run to where you may: chmod -R u+rX {path}"
+            raise _unreadable(str(folder), f"Cannot read {folder}: {error.strerror}.", hint) from error
         for entry in entries:
             with contextlib.suppress(FileNotFoundError):  # as above
                 mode = entry.lstat().st_mode
@@ -749,26 +766,32 @@ def _require_plain(path: Path) -> None:
                     waiting.append(entry)
                 elif not stat.S_ISREG(mode):
                     message = f"{entry} is neither a file nor a folder; a run holds nothing else."
-                    raise RunError.at(path, message, "Do not use this run, or remove what is in it.")
+                    raise RunError.at(path, message, f"Do not use this run, or remove {entry}.")
 
 
 def _read_request(path: Path) -> RunRequest:
     run = Run(path, RunRequest(prompt=""), None)
     stored = run._read_json(REQUEST_FILE)  # noqa: SLF001 - the same class, before initialisation
     if stored is None or stored.get("schema") != REQUEST_SCHEMA:
-        hint = "Name a run directory."
+        hint = "Name the folder of a run, which `articad build PLAN_DIR --out RUN` or `articad generate` makes."
         if (path / _PLAN).is_file() and stored is None:
             hint = f"It is a plan: build it first, by `articad build {path} --out RUN`, and name that run."
         raise RunError.at(path, f"{path} is not a run: it has no {REQUEST_FILE} of the form {REQUEST_SCHEMA}.", hint)
     if wrong := misfit_of(stored, "request"):
         raise RunError.at(
-            path, f"{path / REQUEST_FILE} is incomplete: {wrong} is missing or is something else.", "Name another run directory."
+            path,
+            f"{path / REQUEST_FILE} is incomplete: {wrong} is missing or is something else.",
+            f"Take an undamaged copy of {path}, or name another run.",
         )
     counts = Counter(image["file"] for image in stored["images"])
     for name, count in counts.items():  # an untrusted run may name any file, and its pictures are sent to a model
         if not _IMAGE_FILE.fullmatch(name) or count > 1:
             why = "which is not in the run" if count == 1 else f"{count} times"
-            raise RunError.at(path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, {why}.", "Do not use this run.")
+            raise RunError.at(
+                path,
+                f"{path / REQUEST_FILE} names the picture {name[:100]!r}, {why}.",
+                "Do not use this run: somebody changed it. Make it again in a new folder with --out.",
+            )
     images, left = list[UserImage](), _IMAGES_LIMIT
     for image in stored["images"]:
         images.append(UserImage.read(path / image["file"], image.get("part"), path))
@@ -817,8 +840,8 @@ def _no_number(constant: str) -> None:
     raise ValueError(f"{constant} is not a JSON number")
 
 
-def _unreadable(name: str, message: str) -> ReadError:
-    finding = Finding(code="E_READ", where=name, message=message, hint="Check the file.")
+def _unreadable(name: str, message: str, hint: str) -> ReadError:
+    finding = Finding(code="E_READ", where=name, message=message, hint=hint)
     return ReadError(message, path=name, findings=[finding])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -122,17 +123,56 @@ def test_a_clean_picture_has_its_own_size_and_no_background(tmp_path: Path, caps
     assert "An animation has a background" in capsys.readouterr().err
 
 
-def test_who_opens_a_run_reads_that_its_certificate_is_repeated_and_how_to_check_it(
+REPEATED = "none was checked for this page"
+
+
+@pytest.mark.parametrize(("how", "is_certified"), [("rest", False), ("certified", True)])
+def test_who_opens_a_run_reads_that_its_reports_are_repeated_and_how_to_check_them(
+    how: str, is_certified: bool, starter: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Whoever wrote them: on the terminal and on the page, in the run or elsewhere, and not on the page that the run makes of itself."""
+    run = tmp_path / how
+    assert cli.main(["build", str(starter), "--out", str(run), f"--verify={how}", "-q"]) == 0
+    assert REPEATED not in (run / "report.html").read_text()
+    forged = json.loads((run / "checks.json").read_bytes()) | {"pairs": []}
+    (run / "checks.json").write_text(json.dumps(forged))
+    capsys.readouterr()
+    for out in (["--out", str(tmp_path / "page.html")], []):
+        assert cli.main(["show", str(run), "--no-browser", *out]) == 0
+        said = capsys.readouterr().out
+        assert f"articad check {run}" in said
+        assert (f"articad verify-certificate {run}" in said) is is_certified
+        page = Path(out[-1] if out else run / "report.html").read_text()
+        assert page.index("repeated, not checked now") < page.index("clear at rest")
+        assert REPEATED in re.sub(r'<span class="badge.*?</span>|<p class="unseen">.*?</p>', "", page), "it can be seen"
+        assert "articad check RUN" in page
+        assert ("articad verify-certificate RUN" in page) is is_certified
+    assert cli.main(["check", str(run)]) == 0
+    assert cli.main(["verify-certificate", str(run)]) == (0 if is_certified else 3)
+
+
+def test_the_command_that_an_error_of_a_record_names_writes_it_again(
     starter: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for how, is_said in (("rest", False), ("certified", True)):
-        run = tmp_path / how
-        assert cli.main(["build", str(starter), "--out", str(run), f"--verify={how}", "-q"]) == 0
+    run = tmp_path / "run"
+    assert cli.main(["build", str(starter), "--out", str(run), "--verify=certified", "--export", "urdf", "-q"]) == 0
+    for record in ("certificate.json", "export/urdf/losses.json"):
+        (run / record).write_text('{"ok": 3}')
         capsys.readouterr()
-        assert cli.main(["show", str(run), "--no-browser"]) == 0
-        assert (f"articad verify-certificate {run}" in capsys.readouterr().out) is is_said
-        if is_said:
-            assert cli.main(["verify-certificate", str(run)]) == 0
+        assert cli.main(["show", str(run), "--no-browser", "--out", str(tmp_path / "page.html")]) == 3
+        said = capsys.readouterr().err
+        command = re.search(r"articad ((?:certify|export) .*)", said)
+        assert command, said
+        if removed := re.search("Remove (.*), and export", said):
+            shutil.rmtree(removed[1])
+        assert cli.main([*command[1].split(), "-q"]) == 0
+        assert cli.main(["show", str(run), "--no-browser", "--out", str(tmp_path / "page.html")]) == 0
+
+
+def opened_page(file: Path) -> str:
+    """Return the page of a run without what says that it repeats the run's reports."""
+    page = re.sub(r'<span class="badge quiet" title="[^"]*">repeated, not checked now</span>', "", file.read_text())
+    return re.sub(rf'<p class="quiet">[^<]*{REPEATED}[^<]*</p>|(?<=[.] )Checks, proofs[^<]*?{REPEATED}[^<]*?RUN[.] ', "", page)
 
 
 def test_a_run_keeps_its_page_which_show_makes_again(starter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,7 +189,7 @@ def test_a_run_keeps_its_page_which_show_makes_again(starter: Path, tmp_path: Pa
 
     assert cli.main(["show", str(tmp_path / "run"), "-q"]) == 0
     assert opened == [(tmp_path / "run" / "report.html").as_uri()]
-    assert (tmp_path / "run" / "report.html").read_bytes() == page
+    assert opened_page(tmp_path / "run" / "report.html") == page.decode()
     assert Run.view(tmp_path / "run").hashes() == hashes, "a page is drawn from the rest, and no result"
     assert b'href="./parts/lid/part.step"' in page
 
