@@ -20,7 +20,7 @@ import hashlib
 import itertools
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -311,6 +311,14 @@ def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: A
     return moved
 
 
+def grouped_by(rows: Iterable[Any], key: Callable[[Any], Any]) -> dict[Any, list[Any]]:
+    """Return rows by what they are about: a search of all rows for each pair would take work that grows as the square of their number."""
+    groups: dict[Any, list[Any]] = {}
+    for row in rows:
+        groups.setdefault(key(row), []).append(row)
+    return groups
+
+
 class Checker:
     """Checks a certificate with its meshes and its proof."""
 
@@ -332,6 +340,7 @@ class Checker:
         ways = ([*self.way(j["parent"], j["child"]), (j, False)] for j in self.joints.values() if j["loop"])
         self.loops = [(way, self.around(way)) for way in ways]
         self.groups = self.grouped(certificate["mechanism"]["couplings"])
+        self.pairs = functools.cache(lambda: grouped_by(certificate["pairs"], lambda pair: frozenset(pair["parts"])))
 
     def check(self) -> None:
         """Check every claim; if the certificate is marked ok, check that no claim is missing."""
@@ -366,22 +375,22 @@ class Checker:
     def missing(self, count: int | None = None) -> Iterator[tuple[str, str, str]]:
         """Yield two parts, and the sets of `count` joints, or of all, that can move them together without a claim that covers it."""
         whole = self.certificate
-        waived = [{*pair["parts"]} for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
+        waived = {frozenset(pair["parts"]) for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"}
         claims = [claim for claim in whole["claims"] if self.tolerance.counts(claim)]
         ways = [{f["name"] for name in claim["via"] for f in self.joints[name]["freedoms"]} for claim in claims]
-        said = [({*claim["parts"]}, {*claim["vary"]}, via) for claim, via in zip(claims, ways, strict=True)]
+        said = grouped_by(zip(claims, ways, strict=True), lambda both: frozenset(both[0]["parts"]))
         for a, b in itertools.combinations(whole["meshes"], 2):
-            if {a, b} in waived or self.together(a, b):
+            if frozenset({a, b}) in waived or self.together(a, b):
                 continue
             joints = [joint for joint, _ in self.way(a, b) if joint["freedoms"]]
-            own, mine = {f["name"] for joint in joints for f in joint["freedoms"]}, [said for said in said if said[0] == {a, b}]
+            own, mine = {f["name"] for joint in joints for f in joint["freedoms"]}, said.get(frozenset({a, b}), [])
             free = [joint for joint in joints if joint["name"] in whole["asked"] and joint["name"] not in whole["linkage"]]
             units: list[Any] = [({f["name"] for f in joint["freedoms"]},) * 2 for joint in free]
             for group in (group for group in self.groups if own & {*group}):
                 units += [({name}, {*group}) for name in self.drivers if name in group and self.freedoms[name]["joint"] in whole["asked"]]
             for some in itertools.combinations(units, count or len(units)):
                 # joints outside the path of a claim do not move its two parts
-                if not any(all(names <= vary or not whose & via for names, whose in some) for _, vary, via in mine) and some:
+                if not any(all(names <= {*claim["vary"]} or not whose & via for names, whose in some) for claim, via in mine) and some:
                     yield a, b, ", ".join(sorted(name for names, _ in some for name in names))
 
     def check_joints(self, parts: Any, joints: Any, couplings: Any) -> None:
@@ -420,13 +429,16 @@ class Checker:
 
     def reached(self, a: str, names: Any) -> dict[str, list[Any]]:
         """Return the way from a to each part that joints lead to: those named, or of the tree."""
-        ways: dict[str, list[Any]] = {a: []}
+        tree = (joint for joint in self.joints.values() if not joint["loop"])
+        joints = list(tree if names is None else (self.joints[name] for name in sorted(names) if name in self.joints))
+        steps = [(joint["parent"], joint["child"], (joint, True)) for joint in joints]
+        steps += [(joint["child"], joint["parent"], (joint, False)) for joint in joints]
+        leaving, ways = grouped_by(steps, lambda step: step[0]), {a: list[Any]()}
         for part in (todo := [a]):
-            for joint in self.joints.values():
-                for near, far, forward in ((joint["parent"], joint["child"], True), (joint["child"], joint["parent"], False)):
-                    if near == part and far not in ways and (not joint["loop"] if names is None else joint["name"] in names):
-                        ways[far] = [*ways[part], (joint, forward)]
-                        todo.append(far)
+            for _, far, step in leaving.get(part, ()):
+                if far not in ways:
+                    ways[far] = [*ways[part], step]
+                    todo.append(far)
         return ways
 
     def together(self, a: str, b: str) -> bool:
@@ -733,7 +745,7 @@ class Checker:
 
     def said(self, parts: set[str]) -> float:
         """Return the stated largest overlap depth of two parts; a waiver does not affect it."""
-        found = [pair["strength"] for pair in self.certificate["pairs"] if {*pair["parts"]} == parts]
+        found = [pair["strength"] for pair in self.pairs().get(frozenset(parts), ())]
         depths = [math.inf if how["kind"] == "waived" else how["epsilon_mm"] for how in found if how["kind"] in ("waived", "certified")]
         return max(depths, default=0.0)
 

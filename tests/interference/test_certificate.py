@@ -40,6 +40,7 @@ from articad.interference.surface import Core, Surface, surface_distance
 from articad.interference.work import WorkBudget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
+from tests.growth import bytecodes_of
 from tests.interference.mechanisms import (
     IDENTITY,
     Waiver,
@@ -992,3 +993,23 @@ def test_whoever_calls_the_checker_it_takes_bounded_memory(
         tracemalloc.stop()
     assert fault.startswith(verifier_files.UNREAD if is_told else ("it cannot be read", "an array is not whole")), fault
     assert peak < 12_000_000
+
+
+def test_the_work_of_the_checker_grows_as_the_claims_do() -> None:
+    """Blocks on rails of their own: n (n + 1) / 2 pairs, each with a claim."""
+
+    def work(number: int) -> float:
+        meshes = {f"b{i}": box(1, 1, 1) for i in range(number + 1)}
+        rails = [
+            joint(f"j{i}", "slider", "b0", f"b{i}", at_parent=at(5.0 * i), lower=(0.0,), upper=(2.0,), rest=(0.0,))
+            for i in range(1, number + 1)
+        ]
+        certificate = proven(meshes, rails, pairs=False)
+        return bytecodes_of(lambda: check(certificate.refutation)) / len(certificate.claims)
+
+    def check(refutation: Callable[[], str | None]) -> None:
+        assert refutation() is None
+
+    work(2)
+    few, many = work(5), work(20)
+    assert many <= 1.1 * few
