@@ -24,6 +24,7 @@ from articad.files import is_file
 from articad.findings.codes import CODES
 from articad.mcp import answers
 from articad.mcp.skill import page, section
+from articad.mcp.wire import ArticadServer
 from articad.mcp.workbench import BRIEF_BYTES, Tell, Workbench, condensed, gathered
 from articad.plan.amending import amended
 from articad.processes import scratch
@@ -429,7 +430,7 @@ def make_server(root: str | Path) -> MCPServer:
     for name, method in inspect.getmembers(tools, inspect.iscoroutinefunction):
         if name == _SHOWING:
             apps.tool(resource_uri=_SHELL, structured_output=False)(_told(method))
-    server = MCPServer("articad", version=__version__, instructions=section("The loop"), log_level="WARNING", extensions=[apps])
+    server = ArticadServer("articad", version=__version__, instructions=section("The loop"), log_level="WARNING", extensions=[apps])
     for name, method in inspect.getmembers(tools, inspect.iscoroutinefunction):
         if not name.startswith("_") and name != _SHOWING:
             server.tool(structured_output=False)(_told(method))

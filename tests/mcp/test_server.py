@@ -413,3 +413,38 @@ def test_a_client_that_goes_away_while_a_tool_works_is_no_defect(tmp_path: Path)
         server.stdin.close()
         assert server.wait(60) == 0
         assert server.stderr.read() == b""
+
+
+NO_MESSAGES: list[tuple[bytes, int | None]] = [
+    (rb'{"jsonrpc":"2.0","id":2,"method":"tools/call","params":{"name":"explain","arguments":{"code":"\ud800"}}}', 2),
+    (b'{"jsonrpc":"2.0","id":3,"method":"tools/call","params":{"name":"explain","arguments":{"a":' + b"9" * 10_000 + b"}}}", 3),
+    (b'{"jsonrpc":"2.0","id":4,"method":"tools/call","params":' + b'{"a":' * 5000 + b"1" + b"}" * 5000 + b"}", None),
+    (b"hello", None),
+    (b"\0", None),
+    (b"[]", None),
+    (b"3", None),
+    (b'{"jsonrpc":"2.0","id":5,"met', None),
+]
+
+
+def test_a_line_that_is_no_message_is_answered_and_the_next_one_too(tmp_path: Path) -> None:
+    """Also lines that other parsers of JSON accept: whoever sent them would wait for ever."""
+    words = [sys.executable, "-m", "articad.cli", "mcp", "--root", str(tmp_path)]
+    hello = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "1"}}
+    begin = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": hello}).encode()
+    ping = b'{"jsonrpc":"2.0","id":9,"method":"ping"}'
+    lines = [begin, b'{"jsonrpc":"2.0","method":"notifications/initialized"}', *(line for line, _ in NO_MESSAGES), b"", ping]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as server:
+        assert server.stdin is not None
+        assert server.stdout is not None
+        assert server.stderr is not None
+        server.stdin.write(b"\n".join(lines) + b"\n")
+        server.stdin.flush()
+        answers = [json.loads(server.stdout.readline()) for _ in range(len(NO_MESSAGES) + 2)]
+        server.stdin.close()
+        assert server.wait(60) == 0
+        assert server.stderr.read() == b""
+    refused = [answer for answer in answers if "error" in answer]
+    assert sorted(str(answer["id"]) for answer in refused) == sorted(str(number) for _, number in NO_MESSAGES)
+    assert all(answer["error"]["message"].startswith("The line is not") for answer in refused)
+    assert {answer["id"] for answer in answers if "result" in answer} == {1, 9}
