@@ -92,6 +92,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: Without the program's name; those of the process by default.
     """
+    _open_streams()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # more BLAS threads busy-wait: on busy processors 100 times as long
     options = _parsed(arguments)
 
@@ -102,10 +103,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with _prompt_interrupts(terminal), safe_path():
             return _run(COMMANDS[options.command], options, terminal)
-    except BrokenPipeError:  # the reader of our output went away, as `head` does: print nothing more, not even at exit
-        with contextlib.suppress(OSError, ValueError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return CANNOT_GO_ON
+    except BrokenPipeError:  # the reader of our output went away, as `head` does
+        _print_no_more()
+    except OSError as error:  # nor could the error be printed: the disk of our output is full, for example
+        with contextlib.suppress(OSError):
+            terminal.err.write(f"articad: the output cannot be written: {error.strerror or error}.\n")
+        _print_no_more()
+    return CANNOT_GO_ON
+
+
+def _open_streams() -> None:
+    """Open what is closed of the standard streams, on nothing: else a file that is written gets its number, and what is printed lands in it."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest free number, which is this one
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(number, "r" if number == 0 else "w", encoding="utf-8", closefd=False))  # noqa: SIM115
+
+
+def _print_no_more() -> None:
+    """Let what is still to be printed go nowhere, also at exit."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @contextlib.contextmanager

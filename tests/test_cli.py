@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+import articad
 from articad import __version__, cli
 from articad.commands.command import COMMANDS, Command
 from articad.commands.options import FORMATS
@@ -148,3 +149,22 @@ def test_the_command_line_keeps_blas_to_one_thread() -> None:
     for environment, threads in ((kept, "1"), (kept | {"OPENBLAS_NUM_THREADS": "3"}, "3")):
         done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
         assert done.stdout.endswith(threads)
+
+
+STREAMS = ("<&-", ">&-", "2>&-", "<&- >&- 2>&-", ">/dev/full", "2>/dev/full", ">/dev/full 2>/dev/full")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a shell of POSIX")
+@pytest.mark.parametrize("as_json", [False, True], ids=["words", "json"])
+@pytest.mark.parametrize("streams", STREAMS)
+def test_a_command_works_whichever_of_its_streams_are_closed_or_full(streams: str, as_json: bool, tmp_path: Path) -> None:
+    """Nothing is printed into what it writes, which gets the number of a closed stream; a full disk of the output is an error in words."""
+    program = f"{sys.executable} -P -m articad.cli new box{' --json' if as_json else ''} {streams}"
+    done = subprocess.run(["sh", "-c", program], check=False, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert "Traceback" not in done.stderr + done.stdout
+    is_full = ">/dev/full" in streams.replace("2>/dev/full", "")
+    assert done.returncode == (3 if is_full else 0)
+    assert ("No space left on device" in done.stderr) is (is_full and "2>" not in streams)
+    starter = Path(articad.__file__).parent / "starter"
+    script = (tmp_path / "box" / "parts" / "lid.py").read_bytes()
+    assert script == (starter / "parts" / "lid.py").read_bytes()
