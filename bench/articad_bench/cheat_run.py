@@ -26,7 +26,7 @@ from articad_bench.likeness_checks import handedness
 from articad_bench.reference import given, reference, reference_folders, references
 from articad_bench.shape_checks import placed, same_parts
 from articad_bench.solids import occupied
-from articad_bench.staged_cheats import STAGED, StagedCheat, alike, staged_cheats
+from articad_bench.staged_cheats import LEFT_OPEN, STAGED, StagedCheat, alike, staged_cheats
 from articad_bench.subject import Subject
 from articad_bench.task import Task, read_json, read_task
 
@@ -227,7 +227,7 @@ def _tried(
     cheats = [put(kind, make=partial(make, task, stages[0])) for kind, make in CHEATS.items()]
     if other is not None:
         cheats.append(put("other", make=partial(reference, *other, cache=cache, kernel=kernel)))
-    for cheat in (*cheats, *staged_cheats(begun, stages)):
+    for cheat in (*cheats, *staged_cheats(begun, stages, LEFT_OPEN.get(task.name, ()))):
         row = _judged(task, cheat, digest)
         if row is not None:
             rows.append(row)

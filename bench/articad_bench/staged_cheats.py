@@ -5,18 +5,25 @@ They are made of the product that is given and of the reference at each stage.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final
 
-from articad.assembly import Assembly
-from articad.kinematics import Coupling, Joint
+import numpy as np
 
-__all__ = ["STAGED", "StagedCheat", "alike", "staged_cheats"]
+from articad.assembly import Assembly
+from articad.certificates.certificate import constrained_joints
+from articad.kinematics import Coupling, Joint
+from articad_bench.subject import Subject
+
+__all__ = ["LEFT_OPEN", "STAGED", "StagedCheat", "alike", "staged_cheats"]
 
 STAGED: Final = ("given", "short", "stage", "partly")
 """Kinds of these cheats."""
+
+LEFT_OPEN: Final[Mapping[str, tuple[str, ...]]] = {"engine_inline_three": ("block",), "engine_radial": ("case",)}
+"""Parts by task that its reference changes in an edit, and that another product need not change: a case for the longer stroke holds the shorter one."""
 
 
 @dataclass(frozen=True)
@@ -40,12 +47,13 @@ class StagedCheat:
     make: Callable[[], Assembly | None]
 
 
-def staged_cheats(begun: Assembly | None, stages: Sequence[Assembly]) -> Iterator[StagedCheat]:
+def staged_cheats(begun: Assembly | None, stages: Sequence[Assembly], left_open: Collection[str] = ()) -> Iterator[StagedCheat]:
     """Yield what may be left undone.
 
     Args:
         begun: The product that a task begins with, if it does.
         stages: The reference at first, and after each edit.
+        left_open: Names of parts that need not change.
     """
     products = [begun, *stages]
     for stage, right in enumerate(stages):
@@ -58,16 +66,48 @@ def staged_cheats(begun: Assembly | None, stages: Sequence[Assembly]) -> Iterato
             what = "" if first else f"{_named(number)} in place of {_named(stage)}"
             yield put("given" if first else "stage", what, make=partial(_itself, product))
         for what, make in _partly(before, right):
+            if what in left_open:
+                continue
             yield put("partly", f"{_named(stage)} with {what} as before", make=make)
     if begun is not None:
         yield StagedCheat("short", "", 0, begun, stages[0], partial(_short, stages[0]))
 
 
 def alike(first: Assembly, second: Assembly) -> bool:
-    """Return whether two products have the same shapes, joints and couplings under the same names."""
+    """Return whether two products have the same shapes and move alike, under the same names.
+
+    In a loop or a coupling, other joints may decide where one rests and how far it goes; then its own numbers for that do not matter.
+    """
     shapes = [{name: part.mesh and part.mesh.digest for name, part in each.parts.items()} for each in (first, second)]
     joints = [{joint.name: joint for joint in each.joints} for each in (first, second)]
-    return shapes[0] == shapes[1] and joints[0] == joints[1] and first.mechanism.couplings == second.mechanism.couplings
+    if shapes[0] != shapes[1] or joints[0].keys() != joints[1].keys() or first.mechanism.couplings != second.mechanism.couplings:
+        return False
+    changed = {name for name, joint in joints[0].items() if joint != joints[1][name]}
+    if not changed:
+        return True
+    led = changed <= constrained_joints(first.mechanism) and all(_connect_alike(joints[0][name], joints[1][name]) for name in changed)
+    return led and _go_as_far(first, second)
+
+
+def _connect_alike(one: Joint, other: Joint) -> bool:
+    """Return whether two joints differ at most in where they rest and how far they go."""
+    kinds = [(each.type, each.parent, each.child, each.mate, each.lead, each.driver) for each in (one, other)]
+    return (
+        kinds[0] == kinds[1]
+        and one.T_parent_connector.allclose(other.T_parent_connector)
+        and one.T_child_connector.allclose(other.T_child_connector)
+    )
+
+
+def _go_as_far(first: Assembly, second: Assembly) -> bool:
+    """Return whether two products rest alike, and their drivers have the same names and go as far."""
+    subjects = [Subject(each) for each in (first, second)]
+    at_rest = [each.poses(np.array(each.mechanism.rest)) for each in (first, second)]
+    names = [[coordinate.name for coordinate in each.drivers] for each in (first, second)]
+    if names[0] != names[1] or not at_rest[0].allclose(at_rest[1], mm=1e-3, rad=1e-5):
+        return False
+    ranges = ([subject.driver_range(name) for subject in subjects] for name in names[0])
+    return all(one == other or (one is not None and other is not None and np.allclose(one, other)) for one, other in ranges)
 
 
 def _named(number: int) -> str:

@@ -18,6 +18,7 @@ from articad_bench.cheat_run import _SOURCES, _digest, _judged, run_cheats, the_
 from articad_bench.reference import reference_folders
 from articad_bench.staged_cheats import alike, staged_cheats
 from articad_bench.task import TASKS, Task, tasks_in
+from tests.assemblies import four_bar
 from tests.kinematics.linkages import at, joint
 
 STAGED = "chain_tool_tote"
@@ -82,6 +83,20 @@ def test_joints_that_go_half_as_far_start_where_they_did() -> None:
 def test_a_product_is_itself_in_shapes_joints_and_couplings() -> None:
     assert alike(product(), product())
     assert [alike(product(), other) for other in (product(plate=90), product(turn=1.0), product(ratio=1.0))] == [False] * 3
+
+
+@pytest.mark.parametrize(("wider", "same"), [("right", True), ("left", True), ("both", False)])
+def test_limits_that_another_joint_decides_make_no_other_product(wider: str, same: bool) -> None:
+    limits = JointLimits((-1.8,), (1.8,))
+    joints = [replace(each, limits=limits) if wider in (each.name, "both") else each for each in product().joints]
+    assert alike(product(), replace(product(), mechanism=product().mechanism.changed(joints=joints))) is same
+
+
+@pytest.mark.parametrize("name", ["b", "c"])
+def test_where_a_joint_of_a_loop_is_said_to_rest_makes_no_other_product(name: str) -> None:
+    known = four_bar()
+    joints = [replace(each, rest=(each.rest[0] + 0.01,)) if each.name == name else each for each in known.joints]
+    assert alike(known, replace(known, mechanism=known.mechanism.changed(joints=joints)))
 
 
 def test_every_module_of_checks_and_every_folder_of_a_stage_makes_answers_of_before_old(tmp_path: Path) -> None:
