@@ -6,7 +6,10 @@
 from __future__ import annotations
 
 import argparse
+import codecs
 import contextlib
+import io
+import json
 import os
 import signal
 import sys
@@ -26,6 +29,7 @@ FINDINGS: Final = 1
 USAGE: Final = 2
 CANNOT_GO_ON: Final = 3
 INTERRUPTED: Final = 130  # 128 + SIGINT, as shells count
+_SPELLED: Final = "articad.spelled"
 _PATIENCE_S: Final = 1.0  # for other threads to notice that the program ends
 
 
@@ -121,6 +125,16 @@ def _open_streams() -> None:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest free number, which is this one
         if getattr(sys, name) is None:
             setattr(sys, name, open(number, "r" if number == 0 else "w", encoding="utf-8", closefd=False))  # noqa: SIM115
+    codecs.register_error(_SPELLED, _spelled)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors=_SPELLED)
+
+
+def _spelled(error: UnicodeError) -> tuple[str, int]:
+    """Return what is printed in place of characters that an output cannot encode, ASCII of a C locale for example: the same in JSON."""
+    assert isinstance(error, UnicodeEncodeError)
+    return json.dumps(error.object[error.start : error.end])[1:-1], error.end
 
 
 def _print_no_more() -> None:

@@ -168,3 +168,21 @@ def test_a_command_works_whichever_of_its_streams_are_closed_or_full(streams: st
     starter = Path(articad.__file__).parent / "starter"
     script = (tmp_path / "box" / "parts" / "lid.py").read_bytes()
     assert script == (starter / "parts" / "lid.py").read_bytes()
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
+@pytest.mark.parametrize("as_json", [False, True], ids=["words", "json"])
+def test_what_an_output_cannot_encode_is_spelled(encoding: str, as_json: bool, tmp_path: Path) -> None:
+    """A name of an output's own encoding, of no encoding, and of two UTF-16 units; as JSON it reads back as it was."""
+    program = "import sys; from articad import cli; sys.exit(cli.main())"
+    words = ["skill", "install", "--dir", "\u00e4\u2192\U0001f600", *(["--json"] if as_json else [])]
+    environment = os.environ | {"PYTHONIOENCODING": f"{encoding}:strict"}
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", program, *words], check=False, cwd=tmp_path, env=environment, capture_output=True, timeout=60
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    said = done.stdout.decode(encoding)
+    if as_json:
+        assert json.loads(said)["file"] == "\u00e4\u2192\U0001f600/SKILL.md"
+    else:
+        assert ("\\u2192\\ud83d\\ude00" in said) is (encoding != "utf-8")

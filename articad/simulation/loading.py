@@ -32,6 +32,7 @@ MEMORY = 4 << 30  # bytes of data of a process
 FILE_SIZE = 64 << 20  # bytes of each file that an engine writes: its log
 MOST_BODIES = 300  # whose pairs are checked one by one
 _MESSAGE = 300  # characters of an engine's message that are kept
+_NO_TEXT = "it opens no file whose name or folder has bytes that are not UTF-8"
 
 
 @dataclass(frozen=True)
@@ -125,11 +126,21 @@ def main(arguments: list[str]) -> int:
     sandbox.keep_to([root], [str(Path.cwd())])
     with _captured() as said:
         try:
-            answer = _LOADERS[engine](Path(path), said)
+            # engines take names as UTF-8
+            answer = _LOADERS[engine](Path(path), said) if _is_text(path) else {"version": "", "loads": None, "message": _NO_TEXT}
         except ImportError:
             answer = {"version": "", "loads": None, "message": "it is not installed"}
     print(json.dumps(answer))  # noqa: T201 - this is the answer
     return 0
+
+
+def _is_text(path: str) -> bool:
+    """Whether a path has no bytes that are not UTF-8."""
+    try:
+        path.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _mujoco(path: Path, said: io.StringIO) -> dict[str, Any]:

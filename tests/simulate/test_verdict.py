@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import math
+import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,6 +16,7 @@ from articad.importers.mjcf import read_mjcf
 from articad.plan.schema import AssemblyPlan
 from articad.simulation.examine import simulate_assembly, simulate_file
 from articad.simulation.film import film
+from articad.simulation.loading import Engine, load_in_all
 from articad.simulation.trial import try_out
 from articad.simulation.verdict import SHARE, SimulationVerdict
 from tests.assemblies import all_joint_kinds, four_bar
@@ -344,3 +347,13 @@ def test_the_film_follows_what_the_engine_says(tmp_path: Path) -> None:
     assert max(values) == pytest.approx(1, abs=0.02)
     assert film(read_mjcf(tmp_path / "model.xml"), outcome) is not None
     assert SHARE == 0.99
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names are bytes there")
+def test_a_folder_whose_name_is_no_text_is_no_fault_of_the_model(tmp_path: Path) -> None:
+    """Engines take names as UTF-8; a build called its own files broken."""
+    folder = tmp_path / os.fsdecode(b"a\xff")
+    folder.mkdir()
+    (folder / "arm.urdf").write_text('<robot name="arm"><link name="base"/></robot>')
+    engines: tuple[Engine, ...] = ("mujoco", "pinocchio")
+    assert [loading.loads for loading in load_in_all(folder / "arm.urdf", engines)] == [None, None]
