@@ -97,6 +97,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: Without the program's name; those of the process by default.
     """
     _open_streams()
+    try:
+        return _main(arguments)
+    except KeyboardInterrupt:  # before there was a command to interrupt
+        with contextlib.suppress(OSError):
+            sys.stderr.write("articad: interrupted.\n")
+        return INTERRUPTED
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # more BLAS threads busy-wait: on busy processors 100 times as long
     options = _parsed(arguments)
 

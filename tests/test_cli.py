@@ -186,3 +186,12 @@ def test_what_an_output_cannot_encode_is_spelled(encoding: str, as_json: bool, t
         assert json.loads(said)["file"] == "\u00e4\u2192\U0001f600/SKILL.md"
     else:
         assert ("\\u2192\\ud83d\\ude00" in said) is (encoding != "utf-8")
+
+
+@pytest.mark.parametrize("where", ["articad.cli._parsed", "articad.commands.terminal.Terminal", "articad.cli._run"])
+def test_an_interrupt_before_the_command_begins_is_no_traceback(where: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(where, interrupted)
+    assert cli.main(["doctor", "-q"]) == cli.INTERRUPTED

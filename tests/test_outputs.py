@@ -6,6 +6,7 @@ import argparse
 import ast
 import os
 import re
+import resource
 import shutil
 import signal
 import socket
@@ -230,6 +231,22 @@ def test_a_regular_file_is_replaced_whole_and_its_other_name_keeps_its_content(t
     os.link(tmp_path / "a", tmp_path / "b")
     scratch.write(tmp_path / "a", b"new")
     assert ((tmp_path / "a").read_bytes(), (tmp_path / "b").read_bytes()) == (b"new", MINE)
+
+
+def test_an_error_of_a_full_disk_names_the_file_and_the_old_one_is_whole(tmp_path: Path) -> None:
+    """The system names none when a file has become too large for its disk."""
+    file = tmp_path / "file"
+    scratch.write(file, MINE)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, before[1]))
+    try:
+        with pytest.raises(OSError, match="too large") as error:
+            scratch.write(file, bytes(100_000))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert error.value.filename == str(file)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["file"]
+    assert file.read_bytes() == MINE
 
 
 def test_files_are_on_the_disk_before_they_take_their_names_and_each_folder_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

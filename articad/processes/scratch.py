@@ -97,9 +97,11 @@ def _written(path: Path, content: bytes) -> Iterator[Path]:
     _require_replaceable(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     _sweep_beside(path.parent)
-    temporary, lock = _locked(lambda: _new_file(path.parent))
+    with _about(path):
+        temporary, lock = _locked(lambda: _new_file(path.parent))
     try:
-        _fill(temporary, content)
+        with _about(path):
+            _fill(temporary, content)
         yield temporary
     finally:
         temporary.unlink(missing_ok=True)
@@ -186,6 +188,16 @@ def _require_replaceable(path: Path) -> None:
         return
     kind = "a link" if stat.S_ISLNK(mode) else "a folder" if stat.S_ISDIR(mode) else "a pipe, a socket or a device"
     raise FileExistsError(errno.EEXIST, f"{kind} is in the place of the file; remove it or name another file", str(path))
+
+
+@contextlib.contextmanager
+def _about(path: Path) -> Iterator[None]:
+    """Let an error name the file that was to be written: that of a full disk names none, or the one beside it."""
+    try:
+        yield
+    except OSError as error:
+        error.filename = str(path)
+        raise
 
 
 def _fill(temporary: Path, content: bytes) -> None:
