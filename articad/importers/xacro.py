@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import os
 import signal
 import sys
 from pathlib import Path
 from typing import Any, Final
 
 from articad.errors import ReadError
+from articad.files import ROOT_VARIABLE, is_file
 from articad.findings import Finding
 from articad.importers.packages import environment_folders, find_package
 from articad.importers.referenced_files import package_of
@@ -41,7 +43,7 @@ def expanded(path: Path, root: Path | None = None) -> bytes:
     Raises:
         ReadError: If xacro is not installed, cannot be confined, or fails.
     """
-    if not path.is_file():
+    if not is_file(path):
         raise _error(path, f"There is no file {path}.", "Correct the name.")
     if importlib.util.find_spec("xacro") is None:
         raise _error(path, f"{path} is a xacro file, and xacro is not installed.", f"{INSTALL}, {BY_HAND}.")
@@ -50,8 +52,8 @@ def expanded(path: Path, root: Path | None = None) -> bytes:
         raise _error(
             path, f"{path} is a program, and this machine cannot confine it: it has no Landlock.", f"Use Linux 5.13 or later, {BY_HAND}."
         )
-    own = (root or package_of(path)).resolve()
-    order = {"file": str(path.resolve()), "layers": layers, "readable": [str(own), *map(str, environment_folders())]}
+    readable = _within_root([(root or package_of(path)).resolve(), *environment_folders()])
+    order = {"file": str(path.resolve()), "layers": layers, "readable": [str(folder) for folder in readable]}
     limits = launcher.Limits(seconds=SECONDS, memory=MEMORY, processor=PROCESSOR)
     ended = launcher.run([json.dumps(order)], module="articad.importers.xacro", limits=limits)
     if ended.late or ended.code != 0:
@@ -64,6 +66,18 @@ def expanded(path: Path, root: Path | None = None) -> bytes:
             "Correct the file; name folders of other packages in ROS_PACKAGE_PATH or AMENT_PREFIX_PATH.",
         )
     return ended.out
+
+
+def _within_root(folders: list[Path]) -> list[Path]:
+    """Return what may be read of folders, where everything that this process reads has to lie below a root."""
+    outermost = os.environ.get(ROOT_VARIABLE)
+    if not outermost:
+        return folders
+    root = Path(outermost).resolve()
+    within = [
+        folder if folder.is_relative_to(root) else root for folder in folders if root.is_relative_to(folder) or folder.is_relative_to(root)
+    ]
+    return list(dict.fromkeys(within))
 
 
 def _error(path: Path, message: str, hint: str) -> ReadError:

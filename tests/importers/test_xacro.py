@@ -87,3 +87,36 @@ def test_macros_that_double_end_with_their_processor_time(tmp_path: Path, monkey
     path.write_text(f'{HEAD}<xacro:macro name="m0"><b/></xacro:macro>{doubled}<xacro:m39/></robot>')
     with pytest.raises(ReadError, match="it did not end within 2 s of processor time"):
         read(path)
+
+
+@pytest.mark.parametrize(
+    "reach",
+    [
+        "<link name=\"${xacro.load_yaml('../../secret.yaml')}\"/>",
+        '<xacro:include filename="../../secret.xacro"/>',
+        '<xacro:include filename="$(find other)/secret.xacro"/>',
+    ],
+)
+def test_a_file_below_the_root_of_all_that_is_read_reads_nothing_above_it(
+    reach: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The server of an agent's tools sets that root; it may lie in a ROS package, whose other files are not the agent's."""
+    package(tmp_path / "mine", "robot", MACRO)
+    package(tmp_path / "other", "other", MACRO)
+    for folder in ("mine", "other"):
+        (tmp_path / folder / "secret.yaml").write_text("swordfish")
+        (tmp_path / folder / "secret.xacro").write_text(f'{HEAD}<link name="swordfish"/></robot>')
+    root = tmp_path / "mine" / "designs"
+    (root / "arm").mkdir(parents=True)
+    (root / "arm" / "a.urdf.xacro").write_text(f"{HEAD}{reach}</robot>")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "other"))
+    assert "swordfish" in read(root / "arm" / "a.urdf.xacro").parts
+    monkeypatch.setenv("ARTICAD_ROOT", str(root))
+    with pytest.raises(ReadError) as refused:
+        read(root / "arm" / "a.urdf.xacro")
+    assert "swordfish" not in str(refused.value)
+    (root / "arm" / "a.urdf.xacro").write_text(f'{HEAD}<xacro:include filename="../part.xacro"/></robot>')
+    (root / "part.xacro").write_text(f'{HEAD}<link name="mine"/></robot>')
+    assert [*read(root / "arm" / "a.urdf.xacro").parts] == ["mine"]
+    with pytest.raises(ReadError):
+        read(tmp_path / "mine" / "urdf" / "a.urdf.xacro")
