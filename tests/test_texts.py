@@ -6,6 +6,7 @@ import copy
 import csv
 import io
 import json
+import zipfile
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,14 +14,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lxml import etree
 
 import articad
+from articad.assembly import Assembly
 from articad.cli import main
+from articad.connectors.connector import Connector
+from articad.connectors.se3 import SE3
 from articad.errors import PlanError, ReadError
+from articad.formats import NAMED
 from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Part
 from articad.geometry.shapes import box
 from articad.importers.records import read_records
 from articad.kernels.step_assembly import _part
+from articad.kinematics import declare
 from articad.papers.bill import written_csv
 from articad.plan.schema import AssemblyPlan
 from articad.texts import spoiled
@@ -129,3 +137,31 @@ def test_a_request_that_is_no_text_is_refused(line: list[str], capsys: pytest.Ca
         main(line)
     assert ended.value.code == 2
     assert "the text is not UTF-8" in capsys.readouterr().err
+
+
+HOSTILE = "x\x1b]0;own\x07<script>alert(1)</script>\u202e\n=1+1]]>&#x0;\"'../../y\x00\ufffe"
+WRITTEN = sorted(set(NAMED) - {"freecad", "step"})  # those two need a kernel
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_every_format_holds_hostile_names_and_stays_what_it_is(name: str) -> None:
+    """Names of the caller's own assembly, which no reader has looked at."""
+    frame = SE3.identity()
+    one, other = (
+        Part.from_mesh(each, box(10, 10, 10), density=700, connectors={"c": Connector("c", frame)}, material=HOSTILE)
+        for each in (HOSTILE, f"{HOSTILE}2")
+    )
+    joint = declare.revolute(HOSTILE, one["c"], other["c"], limits=(0.0, 1.0))
+    assembly = Assembly.from_parts(HOSTILE, parts=[one, other], joints=[joint], ground=HOSTILE)
+    files = NAMED[name].write(assembly).files
+    assert files
+    for file, content in files.items():
+        assert ".." not in Path(file).parts
+        assert file.isprintable()
+        if Path(file).suffix == ".3mf":
+            with zipfile.ZipFile(io.BytesIO(content)) as archive:
+                content = archive.read("3D/3dmodel.model")  # noqa: PLW2901
+        if Path(file).suffix in {".urdf", ".xml", ".sdf", ".3mf"}:
+            etree.fromstring(content)
+        if Path(file).suffix not in {".stl", ".glb"}:
+            assert not set("\x1b\x07\x00") & set(content.decode())

@@ -24,6 +24,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.kernels.contract import LIGHT
 from articad.kinematics.joints import JointType
+from articad.texts import escaped
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -83,7 +84,7 @@ def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "f
                 Finding(code="E_MESH_OPEN", where=f"parts.{name}", parts=(name,), message=message, hint="Close the mesh.", stage="export")
             )
             continue
-        files[f"{names.claim(name)}.3mf"] = _package(lying(mesh), name, part.color)
+        files[f"{names.claim(name)}.3mf"] = _package(lying(mesh), escaped(name), part.color)
     if not files and not findings:
         raise ExportError(f"No part of {assembly.name!r} has a shape, so there is nothing to write as 3MF.")
     return Bundle(files, losses, Findings(findings))
