@@ -29,6 +29,8 @@ def krippendorff_alpha(ratings: ArrayLike, level: Level = "ordinal") -> float:
     """
     table = np.asarray(ratings, dtype=float)
     values = np.unique(table[~np.isnan(table)])
+    if not len(values):
+        return float("nan")
     counts = np.array([[np.sum(column == value) for value in values] for column in table.T], dtype=float).reshape(-1, len(values))
     given = counts.sum(axis=1)
     counts, given = counts[given > 1], given[given > 1]

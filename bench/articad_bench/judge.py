@@ -14,24 +14,33 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, Self
 
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from articad.agents.inspection import MOTIONS
 from articad.agents.llm import LLM, Image, Message, Reply, Request, system, user
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
 from articad.agents.replies import ReplyForm, ask, reader, schema_of
-from articad.errors import ArticadError, OutputError, TransportError
+from articad.errors import ArticadError, OutputError, ReadError, TransportError
 from articad.runs.run import digest, write_atomically
 from articad_bench.scoring import model_of, subject_of
 from articad_bench.subject import Subject
-from articad_bench.task import Task, read_image, read_json
+from articad_bench.task import Task, read_image, read_record
 
 SCHEMA: Final = "articad.bench-opinion/1"
 DIMENSIONS: Final = ("geometry", "detail", "motion")
 PARTS: Final = 8  # that a judge sees one by one
 WORST: Final = 1  # what a product scores that was not made
 JUDGED: Final = "judged"  # folder beside the models
+_FORM: Final = {
+    **dict.fromkeys(("task", "kind", "judge", "key"), str),
+    **dict.fromkeys(("made", "moves"), bool),
+    **dict.fromkeys(("calls", "tokens"), int),
+    "opinion": ({}, None),
+    "error": (str, None),
+    "cost": (float, None),
+}
+"""What this program relies on of an opinion that somebody else may have written."""
 _MEDIA: Final = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".gif": "image/gif", ".webp": "image/webp"}
 _MADE: Final = frozenset({"parts", "solids"})
 
@@ -130,9 +139,21 @@ def judge_files(
 
 
 def opinions_in(folder: str | Path) -> list[Judged]:
-    """Return the opinions that a folder holds, by judge and task."""
+    """Return the opinions that a folder holds, by judge and task.
+
+    Raises:
+        ReadError: If one is not what a judging writes.
+    """
     files = sorted((Path(folder) / JUDGED).glob("*/*.json"))
-    return [Judged.from_json(read_json(file)) for file in files]
+    return [_opinion_in(file) for file in files]
+
+
+def _opinion_in(file: Path) -> Judged:
+    try:
+        return Judged.from_json(read_record(file, _FORM))
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise ReadError.at(file, f"opinion.{'.'.join(map(str, first['loc']))}: {first['msg']}.", "Remove it, and judge again.") from None
 
 
 def request_of(place: Path, task: Task, subject: Subject) -> tuple[Message, ...]:
@@ -215,8 +236,8 @@ class _Tally:
 
 def _kept(file: Path, key: str) -> Judged | None:
     try:
-        judged = Judged.from_json(read_json(file))
-    except (OSError, ValueError, KeyError, TypeError):
+        judged = _opinion_in(file)
+    except ReadError:
         return None
     return judged if judged.key == key else None
 

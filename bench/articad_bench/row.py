@@ -8,12 +8,24 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from articad.errors import ReadError
 from articad.runs.run import write_atomically
 from articad_bench.checks import Judgement
-from articad_bench.task import Task, read_json
+from articad_bench.task import Task, read_record
 
 SCHEMA: Final = "articad.bench-row/2"
 ROW: Final = "row.json"
+_JUDGEMENTS: Final = [{"kind": str, "ok": bool, "wanted": str, "measured": str}]
+_FORM: Final = {
+    **dict.fromkeys(("task", "kind", "modality", "key"), str),
+    **dict.fromkeys(("edits", "iterations", "calls", "tokens"), int),
+    **dict.fromkeys(("error", "edit_error"), (str, None)),
+    "judgements": _JUDGEMENTS,
+    "edited": [_JUDGEMENTS],
+    "cost": (float, None),
+    "seconds": float,
+}
+"""What this program relies on of a row that somebody else may have written."""
 _MADE: Final = frozenset({"parts", "solids"})
 
 
@@ -101,14 +113,14 @@ def _stored(judgements: Sequence[Judgement]) -> list[dict[str, Any]]:
 
 
 def _read(stored: Sequence[dict[str, Any]]) -> tuple[Judgement, ...]:
-    return tuple(Judgement(**judgement) for judgement in stored)
+    return tuple(Judgement(*(each[name] for name in ("kind", "ok", "wanted", "measured"))) for each in stored)
 
 
 def kept_row(place: Path, key: str) -> Row | None:
     """Return the row of a task's folder, if it was made of the same task in the same way."""
     try:
-        row = Row.from_json(read_json(place / ROW))
-    except (OSError, ValueError, KeyError, TypeError):
+        row = Row.from_json(read_record(place / ROW, _FORM))
+    except ReadError:
         return None
     return row if row.key == key else None
 
@@ -120,7 +132,11 @@ def keep_row(place: Path, row: Row) -> None:
 
 
 def rows_in(out: str | Path, names: Sequence[str] = ()) -> list[Row]:
-    """Return the rows that a folder of runs holds, by name."""
+    """Return the rows that a folder of runs holds, by name.
+
+    Raises:
+        ReadError: If one is not what a run of the benchmark writes.
+    """
     files = sorted(Path(out).glob(f"*/{ROW}"))
-    rows = [Row.from_json(read_json(file)) for file in files]
+    rows = [Row.from_json(read_record(file, _FORM)) for file in files]
     return [row for row in rows if not names or row.task in names]

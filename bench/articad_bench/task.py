@@ -47,10 +47,12 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import AfterValidator, Field, ValidationError
 
+from articad.bounds import TEXT_BYTES, TEXT_VALUES, values_in
 from articad.errors import ReadError, did_you_mean
 from articad.files import RECORD_BYTES, read_file
 from articad.plan.fields import PlanObject
 from articad.processes import scratch
+from articad.runs.forms import misfit
 from articad_bench.checks import AnyCheck, Judgement
 from articad_bench.heading import judged, names_direction
 from articad_bench.subject import Subject
@@ -197,12 +199,31 @@ def read_json(file: Path) -> Any:
 
     Raises:
         OSError: If it is missing or refused.
-        ValueError: If it is not JSON.
+        ValueError: If it is not JSON, or has more values than any.
     """
+    content = read_file(file, TEXT_BYTES, root=file.parent)
+    if values_in(content) > TEXT_VALUES:
+        raise ValueError(f"it has more than {TEXT_VALUES} values")
     try:
-        return json.loads(read_file(file, RECORD_BYTES, root=file.parent))
+        return json.loads(content)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
+
+
+def read_record(file: Path, form: Any) -> Any:
+    """Return a record of somebody's results that has a form of `articad.runs.forms`.
+
+    Raises:
+        ReadError: If it cannot be read, or does not have the form; says where.
+    """
+    hint = "Remove it, and run or judge the task again: `articad bench run --task NAME`, `articad bench judge`."
+    try:
+        value = read_json(file)
+    except (OSError, ValueError) as error:
+        raise ReadError.at(file, f"It cannot be read: {getattr(error, 'strerror', None) or error}.", hint) from None
+    if wrong := misfit(value, form):
+        raise ReadError.at(file, f"It is no record of the benchmark: {wrong} is missing or is something else.", hint)
+    return value
 
 
 def read_image(folder: Path, name: str) -> bytes:

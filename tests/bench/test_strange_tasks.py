@@ -8,16 +8,21 @@ import shutil
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from articad import examples
 from articad.errors import ReadError
-from articad_bench.judge import JUDGED, opinions_in
+from articad_bench.check import Judgement
+from articad_bench.judge import DIMENSIONS, JUDGED, opinions_in
+from articad_bench.judged_table import judged_table
 from articad_bench.reference import references
-from articad_bench.row import ROW, kept_row, rows_in
+from articad_bench.row import ROW, Row, kept_row, rows_in
+from articad_bench.table import table
 from articad_bench.task import read_image, read_json, read_task, write_task
 from tests.crash.stand_in import FixedKernel
+from tests.test_records import WRONG, changed, places, without
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no pipes in folders")
 SECRET = "the first words of a secret"
@@ -100,6 +105,51 @@ def test_what_is_no_regular_file_of_json_is_refused(kind: str, place: str, reade
     with pytest.raises((ReadError, OSError, ValueError)) as error:
         reader(task)
     assert SECRET not in str(error.value)
+
+
+_ROW = Row(
+    "t",
+    "hard",
+    "text",
+    1,
+    (Judgement("parts", ok=True, wanted="w", measured="m"),),
+    ((Judgement("parts", ok=False, wanted="w", measured="m"),),),
+)
+_OPINION = {
+    "schema": "s", "task": "t", "kind": "hard", "judge": "j", "made": True, "moves": True, "error": None, "calls": 1, "tokens": 2, "cost": 0.1, "key": "k",
+    "opinion": dict.fromkeys(("parts", "comparison", "keyframes"), "x") | {name: {"reason": "r", "score": 5} for name in DIMENSIONS},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("place", "record", "reader"),
+    [
+        (ROW, _ROW.to_json(), lambda folder: json.dumps(table(rows_in(folder.parent)))),
+        (f"{JUDGED}/j/t.json", _OPINION, lambda folder: json.dumps(judged_table(opinions_in(folder)))),
+    ],
+    ids=["row", "opinion"],
+)
+def test_a_wrong_value_anywhere_in_somebodys_results_is_an_error_that_says_where(
+    place: str, record: dict[str, Any], reader: Callable[[Path], object], task: Path
+) -> None:
+    file = task / place
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(record))
+    reader(task)
+    refused: list[tuple[str, str]] = []
+    whole = json.loads(json.dumps(record))
+    for path in places(whole):
+        for wrong in [changed(whole, path, value) for value in WRONG] + ([without(whole, path)] if path else []):
+            file.write_text(json.dumps(wrong))
+            try:
+                reader(task)
+            except ReadError as error:
+                refused.append((str(path[0] if path else file), str(error.findings[0])))
+    assert len(refused) > 50
+    assert [said for place, said in refused if place not in said or str(file) not in said] == []
+    file.write_text("[" + "[]," * 3_200_000 + "1]")
+    with pytest.raises(ReadError, match="values"):
+        reader(task)
 
 
 @pytest.fixture
