@@ -14,7 +14,7 @@ from typing import Final
 from articad.errors import ArticadError
 from articad.kinematics.joints import JointType
 from articad_bench.checks import AnyCheck, Joints, Lead, Made, Moves, Parts, Reaches, moved_shares
-from articad_bench.likeness_checks import Arranged, Handed, Matter, Row, arrangement, filled, handedness, moments_of
+from articad_bench.likeness_checks import DRAWN, PLACE, Arranged, Handed, Matter, Row, arrangement, filled, handedness, moments_of
 from articad_bench.machined_checks import Machined, Toleranced, fits_stated, machined
 from articad_bench.subject import Subject
 from articad_bench.task import Task
@@ -79,7 +79,8 @@ def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
     count = len(subject.shaped)
     if task.images and count > 1 and any(isinstance(check, Parts) and check.number == (count, count) for check in task.checks):
         rows = arrangement(subject)
-        checks.append(Arranged(parts=_rows(rows), loosely=_form(task) == "photos"))
+        place = DRAWN if _form(task) == "sheets" else PLACE
+        checks.append(Arranged(parts=_rows(rows), loosely=_form(task) == "photos", place=place))
     elif task.images and _bodies_are_stated(task, subject):
         checks.append(Arranged(parts=_rows(arrangement(subject, bodies=True)), bodies=True, loosely=_form(task) == "photos"))
     hand = handedness(subject) if shows_hands(task) else 0.0

@@ -57,6 +57,9 @@ _SOURCES: Final = (
     "heading.py",
     "cheats.py",
     "staged_cheats.py",
+    "trick_cheats.py",
+    "room_checks.py",
+    "bodies.py",
 )
 COSTLY: Final = (
     "effort",
@@ -90,6 +93,11 @@ the suite and how to submit a cheat of your own.
 | merged | a moving body united with what carries it, with a crumb in its place |
 | waived | a body that runs through its neighbours, with waivers of its own for all of it |
 | coaxial | loops left open, and as many pins doubled |
+| weightless | of foam, where a weight is asked for |
+| brimful | drawers, or what a lid covers, solid, where it is asked how much they hold |
+| backward | its joints go to the other side of rest, where a side is asked for |
+| notched | a corner of its largest part cut off, 1 to 2 % of it, where sheets are given |
+| slipped | its last part beside its place, along its longest side, where sheets are given |
 | other | the reference of another task |
 | given | the product that the task begins with, as it is |
 | short | of a task that begins with a product: joints go half as far from rest |

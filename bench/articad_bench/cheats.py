@@ -25,6 +25,7 @@ from articad_bench.bindings import shows_hands
 from articad_bench.checks import Freedoms, Joints, Loops, Parts, PartSize, Size
 from articad_bench.subject import Subject
 from articad_bench.task import Task
+from articad_bench.trick_cheats import TRICKS
 
 __all__ = ["CHEATS", "Cheat", "cheats_of"]
 
@@ -358,6 +359,7 @@ CHEATS: Final[Mapping[str, Callable[[Task, Assembly], Assembly | None]]] = {
     "merged": _merged,
     "waived": _waived,
     "coaxial": _coaxial,
+    **TRICKS,
 }
 """Makers of cheats; "other", the reference of another task, is one more."""
 

@@ -24,6 +24,7 @@ from articad.interference.gauge import Gauge, placed
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
+from articad_bench.bodies import moved_bodies, moving
 from articad_bench.check import Bounds, Vector, in_words, within
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
@@ -34,6 +35,7 @@ from articad_bench.machined_checks import Machined, Toleranced
 from articad_bench.module_checks import Fitted, Ordered, Spaced, Turned
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.proofs import proven
+from articad_bench.room_checks import Room, Weighs
 from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
 from articad_bench.spacing_checks import Links, Square
@@ -96,7 +98,7 @@ class Joints(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         found = self.joint.found(subject)
-        others = [f"{joint.name} {joint.type} {in_numbers(subject.axis(joint))} {subject.span(joint):.4g}" for joint in _moving(subject)]
+        others = [f"{joint.name} {joint.type} {in_numbers(subject.axis(joint))} {subject.span(joint):.4g}" for joint in moving(subject)]
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({'; '.join(others[:8]) or 'no joint moves'})"
 
 
@@ -212,7 +214,7 @@ class ClearInMotion(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         found = _bare(subject.assembly).check_motion(steps=self.steps)
-        return found.ok and bool(_moving(subject)), "; ".join(finding.message for finding in found.findings.errors[:3]) or "none"
+        return found.ok and bool(moving(subject)), "; ".join(finding.message for finding in found.findings.errors[:3]) or "none"
 
 
 def _bare(assembly: Assembly) -> Assembly:
@@ -233,7 +235,7 @@ class Certified(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         ok, told = proven(subject, _bare(subject.assembly), pairs=self.pairs, seconds=self.seconds)
-        return ok and bool(_moving(subject)), told
+        return ok and bool(moving(subject)), told
 
 
 class Loops(Check):
@@ -337,7 +339,7 @@ class Reaches(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         joints = self.joint.found(subject)
-        bodies = {joint.name: _moved_bodies(subject, joint) for joint in joints}
+        bodies = {joint.name: moved_bodies(subject, joint) for joint in joints}
         reached = _reached(subject, {body for each in bodies.values() for body in each}, np.array(self.toward))
         ways = [[reached[body] for body in bodies[joint.name]] for joint in joints]
         count = sum(any(within(mm, self.mm) for mm in way) for way in ways)
@@ -489,7 +491,7 @@ class Made(Check):
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         wrong = subject.unmade
-        return bool(_moving(subject)) and len(wrong) <= self.except_for, f"not: {', '.join(wrong)}" if wrong else "all are"
+        return bool(moving(subject)) and len(wrong) <= self.except_for, f"not: {', '.join(wrong)}" if wrong else "all are"
 
 
 class Captive(Check):
@@ -503,9 +505,9 @@ class Captive(Check):
         return f"{in_words(self.number)} moving parts are held by shape"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        moving = {joint.child for joint in _moving(subject)}
+        held_by = {joint.child for joint in moving(subject)}
         ways = Ways(subject.scene, subject.rest)
-        free = [name for name in subject.shaped if name in moving and any(way.free for way in ways_out(ways, name))]
+        free = [name for name in subject.shaped if name in held_by and any(way.free for way in ways_out(ways, name))]
         held = len([name for name in subject.shaped if name in moving]) - len(free)
         return self.number[0] <= held <= self.number[1], f"{held}" + (f" (free: {', '.join(free)})" if free else "")
 
@@ -597,7 +599,9 @@ AnyCheck = Annotated[
     | Ordered
     | Turned
     | Reaches
-    | Fitted,
+    | Fitted
+    | Weighs
+    | Room,
     Field(discriminator="kind"),
 ]
 
@@ -610,27 +614,11 @@ def moved_shares(subject: Subject, joint: Joint) -> list[tuple[float, float]]:
     """Return the share of the whole's volume, and of the diagonal of its box, of what a joint moves at rest: one body, or two in a loop."""
     volumes = {name: abs(subject.assembly.parts[name].mesh.volume) for name in subject.shaped}  # type: ignore[union-attr]
     shares = []
-    for body in _moved_bodies(subject, joint):
+    for body in moved_bodies(subject, joint):
         parts = [name for name in subject.shaped if subject.rigid[name] == body]
         side = float(np.linalg.norm(np.ptp(subject.corners(subject.rest, parts), axis=0))) if parts else 0.0
         shares.append((sum(volumes[name] for name in parts) / sum(volumes.values()), side / float(np.linalg.norm(subject.size))))
     return shares
-
-
-def _moved_bodies(subject: Subject, joint: Joint) -> list[str]:
-    """Return the body beyond a joint, seen from the ground; both bodies of a joint in a loop, without the ground."""
-    others = [(subject.rigid[each.parent], subject.rigid[each.child]) for each in _moving(subject) if each is not joint]
-    ground = subject.rigid[subject.assembly.ground]
-    reached, fresh = {ground}, {ground}
-    while fresh:
-        fresh = {end for ends in others for end in ends if fresh & {*ends}} - reached
-        reached |= fresh
-    ends = dict.fromkeys((subject.rigid[joint.child], subject.rigid[joint.parent]))
-    return [end for end in ends if end not in reached] or [end for end in ends if end != ground]
-
-
-def _moving(subject: Subject) -> list[Joint]:
-    return [joint for joint in subject.assembly.joints if joint.type is not JointType.FIXED]
 
 
 def _travel(subject: Subject, joint: Joint) -> float:
@@ -679,7 +667,7 @@ def _trivial_loops(subject: Subject) -> int:
     A door with two hinges is such a loop. In a graph of E joints between V bodies in C pieces, E - V + C loops are independent.
     """
     kinds: dict[int, list[tuple[FloatArray, FloatArray | None, Joint]]] = {0: [], 1: []}
-    for joint in _moving(subject):
+    for joint in moving(subject):
         frame = subject.rest[joint.parent] @ joint.T_parent_connector
         if joint.type in _ABOUT_LINE:
             kinds[0].append((frame.z_axis, frame.translation, joint))

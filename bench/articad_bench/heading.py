@@ -24,7 +24,7 @@ def names_direction(texts: Iterable[str]) -> bool:
 def is_directed(check: Check) -> bool:
     """Return whether a check tells x from y."""
     row = check.model_dump()
-    return _directs(row) or (row["kind"] == "size" and row["mm"][0] != row["mm"][1])
+    return _directs(row) or (row["kind"] in {"size", "room"} and row["mm"][0] != row["mm"][1])
 
 
 def _directs(value: Any) -> bool:

@@ -17,6 +17,7 @@ from articad_bench.shape_checks import placed
 from articad_bench.subject import Subject
 
 PLACE: Final = 0.12  # of the diagonal of the whole, by which a part may lie beside its place
+DRAWN: Final = 0.015  # the same, where sheets are dimensioned: a pin half out of its bore is not what they show
 LOOSELY: Final = {3: 2.2, 4: 1.3}  # the same, where sizes are read off photos
 APART: Final = 0.03  # of the diagonal: places nearer to each other are not told apart
 _MATTER: Final = 3  # the column of the share of the matter
@@ -40,6 +41,7 @@ class Arranged(Check):
         bodies: Whether these are bodies: parts that are fixed together count as one. Bodies may be of any number of parts, and how much of
             its box a body fills is its maker's choice; so their order of size is that of their boxes.
         loosely: Whether sizes are read off photos: then only parts of very different sizes have an order.
+        place: Share of the diagonal of the whole by which a part may lie beside its place.
 
     No picture says what is solid and what is hollow: a tube that is larger than a plate may be of less matter.
     """
@@ -48,10 +50,13 @@ class Arranged(Check):
     parts: tuple[Row, ...]
     bodies: bool = False
     loosely: bool = False
+    place: float = PLACE
 
     @property
     def wanted(self) -> str:
-        return f"{len(self.parts)} {self._name} lie where they are shown, within {100 * PLACE:g} % of the whole, in their order of size"
+        return (
+            f"{len(self.parts)} {self._name} lie where they are shown, within {100 * self.place:g} % of the whole, in their order of size"
+        )
 
     @property
     def _name(self) -> str:
@@ -64,9 +69,9 @@ class Arranged(Check):
         found = np.column_stack([found, [0.0] * len(found) if self.bodies else _hulls(subject)])
         least = {column: (LOOSELY if self.loosely else LARGER)[column] for column in ((4,) if self.bodies else (3, 4))}
         tries = [_compared(found, wanted, turn, least) for turn in TURNS]
-        beside, reversed_ = min(tries, key=lambda each: (each[0] > PLACE or each[1] > 0, each))
+        beside, reversed_ = min(tries, key=lambda each: (each[0] > self.place or each[1] > 0, each))
         return (
-            beside <= PLACE and not reversed_,
+            beside <= self.place and not reversed_,
             f"the worst lies {100 * beside:.2g} % beside its place, {reversed_} pairs in the other order",
         )
 

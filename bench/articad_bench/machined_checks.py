@@ -21,8 +21,8 @@ from articad_bench.subject import Subject
 PLACE_MM: Final = 0.25  # by which a round may lie beside its place
 SIZE_MM: Final = 0.12  # by which diameters and lengths may differ
 SIZE_SHARE: Final = 0.004  # of a diameter or length, by which it may differ in addition
-VOLUME: Final = 0.02  # of a part's volume
-SPREAD: Final = 0.015  # of the radii of gyration of a part
+VOLUME: Final = 0.005  # of a part's volume: a slot or a flat is seldom more than 2 %
+SPREAD: Final = 0.004  # of the radii of gyration of a part
 CENTRE: Final = 0.01  # of the diagonal of a part's rounds, by which its centre of mass may lie beside its place
 LEAN: Final = 0.9998  # cosine of the angle by which an axis may lean
 MEASURED_MM: Final = 0.002  # by which a diameter that is measured on a mesh may be off

@@ -82,6 +82,7 @@ FOLLOWS: Final = {
     "symmetric": "words: the shape that is described",
     "volume": "follows from the measures",
     "mass": "follows from the measures and the material",
+    "weighs": "follows from the measures and the material",
     "captive": "words: what cannot come off",
     "arranged": "picture: where the parts lie",
     "handed": "picture, or words of a side",
@@ -119,6 +120,7 @@ _ON_PHOTOS: Final = {
     "joints": "photos: what the joints do",
     "freedoms": "photos: what moves",
     "loops": "photos: what moves",
+    "holds": "photos: what is hollow",
 }
 """What photos show without a scale."""
 PHOTO: Final = 0.1  # of a measure, that somebody who reads photos with care may be off
@@ -355,7 +357,8 @@ def _bounds(row: Any) -> list[Value]:
 
 
 def _round_values(row: Any) -> list[Value]:
-    return _lengths(row, (row.diameter, row.pitch, row.circle)) + ([] if row.length is None else [("mm", *row.length)])
+    bounds = [("mm", *each) for each in (row.length, row.above) if each is not None]
+    return [*_lengths(row, (row.diameter, row.pitch, row.circle, *(row.apart[1] if row.apart else ()))), *bounds]
 
 
 def _ratio_values(row: Any) -> list[Value]:
@@ -402,6 +405,8 @@ _MEASURES: Final[dict[str, Callable[[Any], list[Value]]]] = {
     **dict.fromkeys(("ratio", "turns"), _ratio_values),
     "mass": lambda row: [("kg", *row.kg)],
     "holds": lambda row: [("ml", *row.ml)],
+    "weighs": lambda row: [("kg", *row.kg), *_lengths(row, row.mm or ())],
+    "room": lambda row: _exact(row.mm),
     "stands": lambda row: [("deg", row.degrees, row.degrees)],
     "effort": lambda row: [(row.unit, *row.most), *([("kg", row.load, row.load)] if row.load else [])],
     "carries": _carried_values,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final, Literal
 
 import numpy as np
@@ -9,10 +10,13 @@ from scipy.optimize import linear_sum_assignment
 
 from articad.arrays import FloatArray
 from articad.geometry import TriMesh
+from articad_bench.bodies import moved_bodies
 from articad_bench.check import Bounds, Check, Vector, in_words, widened, within
 from articad_bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
 from articad_bench.subject import Subject
+from articad_bench.wanted import JointWanted
 
+SAME_LEVEL_MM: Final = 0.2
 LEAN: Final = 0.996  # cosine of the 5° by which an axis may lean from the one asked for
 
 
@@ -20,7 +24,8 @@ class _Rounds(Check):
     """A number of cylindrical faces of one diameter, in all parts together, at rest.
 
     `length` is along the axis, `axis` in the frame of the whole, `pitch` the distance of each axis from the nearest parallel one of them,
-    `circle` the diameter of the circle on which all axes lie.
+    `circle` the diameter of the circle on which all axes lie. `apart` is a direction in the frame of the whole and the distances, one after
+    the other, of the levels on which the axes lie along it; `above` the height of the axes above the lowest point of the whole.
     """
 
     diameter: float
@@ -29,12 +34,16 @@ class _Rounds(Check):
     axis: Vector | None = None
     pitch: float | None = None
     circle: float | None = None
+    apart: tuple[Vector, tuple[float, ...]] | None = None
+    above: Bounds | None = None
     tolerance: float = 0.02
 
     @property
     def wanted(self) -> str:
         also = [f"{in_words(self.length)} mm long" if self.length else "", f"along {self.axis}" if self.axis else ""]
         also += [f"{self.pitch:g} mm apart" if self.pitch else "", f"on a circle of {self.circle:g} mm" if self.circle else ""]
+        also += [f"on levels {', '.join(f'{mm:g}' for mm in self.apart[1])} mm apart along {self.apart[0]}" if self.apart else ""]
+        also += [f"{in_words(self.above)} mm above the ground" if self.above else ""]
         return f"{in_words(self.number)} {self._name} of {self.diameter:g} mm within {100 * self.tolerance:g} %" + "".join(
             f", {a}" for a in also if a
         )
@@ -60,7 +69,23 @@ class _Rounds(Check):
             circles = [2 * _beside(found, middle) for found in meant]
             ok &= all(abs(mm - self.circle) <= self.tolerance * self.circle for mm in circles)
             told += f", on circles of {', '.join(f'{mm:.4g}' for mm in circles[:4])} mm"
+        for fits, words in self._levels(subject, meant):
+            ok &= fits
+            told += words
         return ok, told
+
+    def _levels(self, subject: Subject, meant: list[Round]) -> Iterator[tuple[bool, str]]:
+        """Yield whether the axes lie on the levels that are asked for, and how high, with what is measured in words."""
+        if self.apart is not None:
+            way = np.array(self.apart[0]) / np.linalg.norm(self.apart[0])
+            found = _steps([float(each.centre @ way) for each in meant])
+            ok = len(found) == len(self.apart[1])
+            ok = ok and all(abs(mm - wanted) <= self.tolerance * wanted for mm, wanted in zip(found, self.apart[1], strict=True))
+            yield ok, f", on levels {', '.join(f'{mm:.4g}' for mm in found)} mm apart"
+        if self.above is not None:
+            ground = float(subject.corners(subject.rest)[0][2])
+            heights = [float(each.centre[2]) - ground for each in meant]
+            yield all(within(mm, self.above) for mm in heights), f", {', '.join(f'{mm:.4g}' for mm in heights[:4])} mm above the ground"
 
     def _meant(self, found: Round) -> bool:
         if abs(2 * found.radius - self.diameter) > self.tolerance * self.diameter:
@@ -134,18 +159,41 @@ class Volume(Check):
 
 
 class Holds(Check):
-    """What it holds, filled to the brim, standing as it is."""
+    """What it holds, filled to the brim, standing as it is; with `joint`, what each body that such a joint moves holds by itself.
+
+    Attributes:
+        ml: Bounds of what is held.
+        joint: Of the bodies that are meant: drawers.
+        without: Leaves out what such joints move: a chest is filled while its lid is away.
+        number: Of such bodies.
+    """
 
     kind: Literal["holds"] = "holds"
     ml: Bounds
+    joint: JointWanted | None = None
+    without: JointWanted | None = None
+    number: Bounds = (1, 999)
 
     @property
     def wanted(self) -> str:
-        return f"holds {in_words(self.ml)} ml"
+        each = "" if self.joint is None else f"{in_words(self.number)} bodies that are moved by {self.joint} each "
+        away = "" if self.without is None else f" without what is moved by {self.without}"
+        return f"{each}holds {in_words(self.ml)} ml{away}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        held = held_volume(placed(subject)) / 1000
-        return within(held, self.ml), f"{held:.4g} ml"
+        held = [held_volume(meshes) / 1000 for meshes in self._vessels(subject) if meshes]
+        count = sum(within(ml, self.ml) for ml in held)
+        return self.number[0] <= count <= self.number[1], ", ".join(f"{ml:.4g} ml" for ml in held[:12]) or "no such body"
+
+    def _vessels(self, subject: Subject) -> Iterator[list[TriMesh]]:
+        """Yield the meshes of each vessel."""
+        meshes = dict(zip(subject.shaped, placed(subject), strict=True))
+        if self.joint is not None:
+            for body in dict.fromkeys(body for joint in self.joint.found(subject) for body in moved_bodies(subject, joint)):
+                yield [mesh for name, mesh in meshes.items() if subject.rigid[name] == body]
+            return
+        away = {body for joint in (self.without.found(subject) if self.without else ()) for body in moved_bodies(subject, joint)}
+        yield [mesh for name, mesh in meshes.items() if subject.rigid[name] not in away]
 
 
 class Stands(Check):
@@ -197,6 +245,15 @@ def same_parts(first: Subject, second: Subject, slack: float) -> bool:
     alike = np.abs(boxes[:, None] - others[None]).max(axis=2) <= slack * float(first.size.max())
     alike &= np.abs(volumes[:, None] - further[None]) <= slack * volumes[:, None]
     return bool(alike[linear_sum_assignment(~alike)].all())
+
+
+def _steps(places: list[float]) -> list[float]:
+    """Return the distances of the levels on which places lie, from the lowest on [mm]."""
+    levels: list[float] = []
+    for place in sorted(places):
+        if not levels or place - levels[-1] > SAME_LEVEL_MM:
+            levels.append(place)
+    return [float(mm) for mm in np.diff(levels)]
 
 
 def _beside(found: Round, point: FloatArray) -> float:

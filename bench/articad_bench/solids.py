@@ -369,6 +369,11 @@ def occupied(meshes: Sequence[TriMesh], cells: int = CELLS) -> tuple[Grid, float
     return np.asarray(np.any([_filled(_crossings(mesh, start, np.full(3, pitch), shape)) for mesh in meshes], axis=0)), pitch
 
 
+def filled_cells(mesh: TriMesh, start: FloatArray, pitch: FloatArray, shape: tuple[int, int, int]) -> Grid:
+    """Return the cells of a grid whose middles lie in a solid; start is the corner of the grid, and pitch the sides of a cell [mm]."""
+    return _filled(_crossings(mesh, start, pitch, shape))
+
+
 def held_volume(meshes: Sequence[TriMesh], cells: int = CELLS) -> float:
     """Return how much water stays in a vessel that stands as it is, filled to the brim [mm³].
 

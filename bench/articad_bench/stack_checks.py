@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from articad.errors import PlanError
 from articad.plan.fields import PlanObject
 from articad.plan.iso2768 import ToleranceClass, deviation
 from articad_bench.check import Bounds, Check, Vector, in_words
+from articad_bench.module_checks import middle_along
 from articad_bench.subject import Subject
 from articad_bench.wanted import JointWanted, in_numbers
 
@@ -55,7 +57,7 @@ class Play(PlanObject):
 class Stack(Check):
     """What is left in a stack is within bounds [mm], in the worst case: every size anywhere in its tolerance, and every fit anywhere in its limits.
 
-    A line in one direction crosses the pieces one after the other, between two faces that hold them. What is left is the distance of these faces
+    A line in one direction crosses the pieces one after the other, between two faces that hold them; neighbours are different parts. What is left is the distance of these faces
     without the lengths of the pieces, wherever these lie; the line on which least is left counts. The deviations of all lengths are added up. The
     play of joints is added to it, from the limits of the fits that the product declares; it has to keep them as it is modelled.
 
@@ -63,6 +65,7 @@ class Stack(Check):
         along: Direction of the line.
         pieces: In the order in which the line crosses them, from either end.
         between: How far the distance of the two faces may be off: a class of ISO 2768-1, or below and above [mm].
+        sides: Direction along which such stacks lie on both sides of the middle of a piece: a strip on each wall. None where one is enough.
         plays: Joints whose play adds to it.
         mm: Bounds of what is left.
     """
@@ -71,6 +74,7 @@ class Stack(Check):
     along: Vector = (0.0, 0.0, 1.0)
     pieces: tuple[Piece, ...] = ()
     between: ToleranceClass | Bounds = (0.0, 0.0)
+    sides: Vector | None = None
     plays: tuple[Play, ...] = ()
     mm: Bounds
 
@@ -88,9 +92,12 @@ class Stack(Check):
         low = high = 0.0
         told = []
         if self.pieces:
-            found = least_left(subject, self.pieces, np.array(self.along))
-            if found is None:
+            every = stacks_of(subject, self.pieces, np.array(self.along))
+            if not every:
                 return False, "no line crosses such pieces between two faces"
+            if self.sides is not None and not _on_both_sides(subject, every, np.array(self.sides)):
+                return False, f"such stacks lie on one side along {in_numbers(self.sides)} alone"
+            found = min(every, key=lambda left: left.left)
             between = self.between if isinstance(self.between, tuple) else _general(self.between, found.between)
             limits = [piece.limits(length) for piece, length in zip(self.pieces, found.lengths, strict=True)]
             low = found.left + between[0] - sum(above for _, above in limits)
@@ -131,12 +138,16 @@ class Left(NamedTuple):
         between: Distance of the two faces [mm].
         lengths: Of the pieces [mm].
         faces: The two parts that hold them.
+        piece: The part of the first piece.
+        place: A point of the line, in the frame of the whole `(3,)` [mm].
     """
 
     left: float
     between: float
     lengths: tuple[float, ...]
     faces: tuple[str, str]
+    piece: str
+    place: FloatArray
 
 
 class _Span(NamedTuple):
@@ -145,8 +156,14 @@ class _Span(NamedTuple):
     part: str
 
 
-def least_left(subject: Subject, pieces: Sequence[Piece], along: FloatArray) -> Left | None:
-    """Return what is left on the line on which it is least; None if no line crosses such pieces.
+def _on_both_sides(subject: Subject, every: Sequence[Left], way: FloatArray) -> bool:
+    """Return whether lines lie on both sides of the middle of their first piece."""
+    beside = [float(left.place @ way / np.linalg.norm(way)) - middle_along(subject, left.piece, way) for left in every]
+    return min(beside) < 0 < max(beside)
+
+
+def stacks_of(subject: Subject, pieces: Sequence[Piece], along: FloatArray) -> list[Left]:
+    """Return what is left on each line that crosses such pieces.
 
     Args:
         subject: The assembly at rest.
@@ -164,9 +181,11 @@ def least_left(subject: Subject, pieces: Sequence[Piece], along: FloatArray) -> 
         corners[name] = (subject.rest[name].apply(mesh.vertices) @ turn.T)[mesh.triangles]
     lines = _lines(corners, pieces)
     rows = zip(*(_spans(name, triangles, lines) for name, triangles in corners.items()), strict=True)
-    clear = (sorted(span for spans in row if spans is not None for span in spans) for row in rows if None not in row)
-    every = [left for line in clear for left in _stacks(line, pieces)]
-    return min(every, key=lambda left: left.left, default=None)
+    found: list[Left] = []
+    for row, place in zip(rows, lines @ turn[:2], strict=True):
+        if None not in row:
+            found += _stacks(sorted(span for spans in row if spans is not None for span in spans), pieces, place)
+    return found
 
 
 def _lines(corners: dict[str, FloatArray], pieces: Sequence[Piece]) -> FloatArray:
@@ -212,7 +231,7 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
-def _stacks(spans: Sequence[_Span], pieces: Sequence[Piece]) -> Iterator[Left]:
+def _stacks(spans: Sequence[_Span], pieces: Sequence[Piece], place: FloatArray) -> Iterator[Left]:
     """Yield the stacks of such pieces, in either order, that have a part before and behind them."""
     count = len(pieces)
     for first in range(1, len(spans) - count):
@@ -222,5 +241,7 @@ def _stacks(spans: Sequence[_Span], pieces: Sequence[Piece]) -> Iterator[Left]:
             lengths = [span.end - span.start for span in run]
             if all(piece.mm[0] - ROUNDED <= length <= piece.mm[1] + ROUNDED for piece, length in zip(order, lengths, strict=True)):
                 between = behind.start - before.end
+                if any(a.part == b.part for a, b in pairwise((before, *run, behind))):
+                    continue  # the teeth of a comb are no pieces: what is one part is not stacked
                 turned = tuple(lengths if order is pieces else lengths[::-1])
-                yield Left(between - sum(lengths), between, turned, (before.part, behind.part))
+                yield Left(between - sum(lengths), between, turned, (before.part, behind.part), run[0].part, place)

@@ -11,6 +11,7 @@ from typing import Final, Literal, NamedTuple
 from articad.kinematics.joints import JointType
 from articad_bench.checks import Joints, Loops, Mass
 from articad_bench.function_checks import PutTogether
+from articad_bench.room_checks import Weighs
 from articad_bench.stack_checks import Stack
 from articad_bench.task import Task
 
@@ -79,9 +80,9 @@ UNSAID: Final = (
     Unsaid("freecad", "cone", _OF_A_CONE, "FreeCAD limits no angle of a ball."),
     Unsaid("freecad", "swing", _OF_A_CONE | {"moves"}, "FreeCAD limits no angle of a universal joint."),
     Unsaid("freecad", "linear", MOTION, "FreeCAD couples joints by gears, belts, racks and screws alone."),
-    Unsaid("freecad", "weight", frozenset({"mass"}), "FreeCAD holds no densities but those of its own library."),
-    Unsaid("step", "motion", MOTION | {"lead", "threads", "joined", "arranged", "carries"}, "STEP holds no joints."),
-    Unsaid("step", "weight", frozenset({"mass"}), "STEP holds no densities."),
+    Unsaid("freecad", "weight", frozenset({"mass", "weighs"}), "FreeCAD holds no densities but those of its own library."),
+    Unsaid("step", "motion", MOTION | {"lead", "threads", "joined", "arranged", "carries", "holds"}, "STEP holds no joints."),
+    Unsaid("step", "weight", frozenset({"mass", "weighs"}), "STEP holds no densities."),
 )
 
 
@@ -97,7 +98,7 @@ def asked_for(task: Task) -> set[Asked]:
             found.add("swing")
         if isinstance(check, PutTogether) and check.force:
             found.add("force")
-        if isinstance(check, Mass):
+        if isinstance(check, Mass | Weighs):
             found.add("weight")
         if isinstance(check, Stack) and check.plays:
             found.add("fit")

@@ -388,6 +388,66 @@ def test_a_mirror_image_is_the_same_where_the_whole_has_no_hand() -> None:
     assert not mirrored(solid(box(100, 60, 20)), solid(placed(box(10, 8, 40), 40, 20, 20)))
 
 
+def tub() -> Assembly:
+    """A board, and on it an open tub that slides out by 50 mm toward -y."""
+    hollow = made("Subtract", solid(placed(box(80, 60, 40), 0, 0, 25)), solid(placed(box(70, 50, 40), 0, 0, 30)))
+    parts = [Part.from_mesh("board", box(100, 160, 10), density=700), Part.from_mesh("tub", hollow, density=700)]
+    out = joint("draw", "slider", ("board", at(0) @ SE3.rot_x(math.pi / 2)), ("tub", at(0) @ SE3.rot_x(math.pi / 2)), limits=[(0.0, 50.0)])
+    return Assembly.from_parts("tub", parts=parts, joints=[out], ground="board")
+
+
+@pytest.mark.parametrize(
+    ("kind", "row"),
+    [
+        ("weightless", {"kind": "weighs", "joint": {"type": "slider"}, "kg": [0.04, 0.06]}),
+        ("weightless", {"kind": "weighs", "mm": [40, 60, 80], "kg": [0.04, 0.06]}),
+        ("brimful", {"kind": "holds", "joint": {"type": "slider"}, "ml": [110, 130], "number": [1, 1]}),
+        ("backward", {"kind": "reaches", "joint": {"type": "slider"}, "toward": [0, -1, 0], "mm": [49, 51]}),
+    ],
+)
+def test_a_trick_is_tried_where_a_check_names_what_it_misses_and_is_refused_by_it(kind: str, row: dict[str, Any]) -> None:
+    product = tub()
+    asked = Task.model_validate({"name": "tub", "kind": "articulated", "product": "tub", "prompt": "A tub on a board.", "checks": [row]})
+
+    assert form(row).judge(Subject(product)).ok
+    (cheat,) = cheats_of(asked, product, (kind,))
+    assert not form(row).judge(Subject(cheat.assembly)).ok
+    assert [*cheats_of(asked.model_copy(update={"checks": ()}), product, (kind,))] == []
+
+
+@pytest.mark.parametrize("kind", ["notched", "slipped"])
+def test_what_sheets_do_not_show_is_refused(kind: str) -> None:
+    product = hinge()
+    drawn = {"form": "sheets"}
+    asked = bound(Task.model_validate(HINGED | {"prompt": "", "images": ["sheet_1.png"], "drawing": drawn}), Subject(product))
+
+    (cheat,) = cheats_of(asked, product, (kind,))
+    wrong = {judged.kind for judged in asked.judge(Subject(cheat.assembly)) if not judged.ok}
+    assert ("machined" if kind == "notched" else "arranged") in wrong
+    assert refused_by(asked, Subject(product)) is None
+
+
+def test_a_comb_is_no_stack_and_a_stack_on_one_side_is_none_on_both() -> None:
+    """Three blocks of 10 mm between two jaws, in one piece and in five; beside them, as asked for, once more."""
+
+    def blocks(x: float) -> list[TriMesh]:
+        ends = [placed(box(10, 10, 4), x, 0, z) for z in (-2, 32.2)]
+        return [*ends, *(placed(box(10, 10, 9.95), x, 0, 5.05 + 10.05 * i) for i in range(3))]
+
+    def judge(*meshes: tuple[str, TriMesh], sides: list[float] | None = None) -> bool:
+        fixed = [joint(f"j{i}", "fixed", (meshes[0][0], at(0)), (name, at(0))) for i, (name, _) in enumerate(meshes[1:])]
+        row = {"kind": "stack", "pieces": [{"mm": [9.9, 10]}] * 3, "mm": [0.1, 1], "sides": sides}
+        return form(row).judge(of(*meshes, joints=fixed)).ok
+
+    several = [(f"b{i}", mesh) for i, mesh in enumerate(blocks(0))]
+    comb = made("Add", *(solid(mesh) for mesh in blocks(0)), solid(placed(box(4, 10, 38.2), 6, 0, 15.1)))
+    assert judge(*several)
+    assert not judge(("comb", comb), ("other", placed(box(1, 1, 1), 50, 0, 0)))
+    assert judge(*several, sides=[1, 0, 0])
+    halves = [(name, placed(mesh, 0, 0, 0) if name != "b0" else placed(box(4, 10, 4), -3, 0, -2)) for name, mesh in several]
+    assert not judge(*halves, sides=[1, 0, 0])
+
+
 def test_no_cheat_of_a_bound_task_passes_and_the_reference_does() -> None:
     reference = hinge()
     chosen = bound(task(), Subject(reference))

@@ -103,6 +103,11 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("wardrobe", {"kind": "ordered", "sizes": [[48, 48, 132], DRAWER, [11, 11, 32.7]], "axis": [0, 0, 1]}),
     ("wardrobe", {"kind": "turned", "mm": DRAWER, "alike": [2]}),
     ("wardrobe", {"kind": "reaches", "joint": {"type": "slider"}, "toward": [0, -1, 0], "mm": [360, 365], "number": [2, 2]}),
+    ("wardrobe", {"kind": "holds", "ml": [5000, 200000], "joint": {"type": "slider"}, "number": [2, 2]}),
+    ("wardrobe", {"kind": "weighs", "mm": DRAWER, "kg": [0.1, 9], "number": [2, 2]}),
+    ("wardrobe", {"kind": "weighs", "joint": {"type": "slider"}, "kg": [0.1, 9], "number": [2, 2]}),
+    ("brief_rack_crates", {"kind": "room", "mm": [400, 300, 280], "number": [3, 3]}),
+    ("brief_table_bedside", {"kind": "room", "mm": [600, 380, 300], "at": "under"}),
     ("slider_crank", {"kind": "fitted", "diameter": 16, "play": [0.2, 0.4], "number": [1, 1]}),
     (
         "slider_crank",

@@ -145,6 +145,15 @@ def _two_solids(_check: Check, subject: Subject) -> Subject:
     return _with_mesh(subject, name, merged([mesh, crumb]))
 
 
+def _crowded(_check: Check, subject: Subject) -> Subject:
+    """One part fills the box of the whole."""
+    low, high = subject.corners(subject.rest)
+    name = subject.shaped[0]
+    block = box(*(high - low).tolist()).transformed(subject.rest[name].inverse() @ SE3.from_translation((low + high) / 2))
+    parts = [shaped_as(part, block) if part.name == name else part for part in subject.assembly.parts.values()]
+    return Subject(changed(subject.assembly, parts))
+
+
 def _massless(_check: Check, subject: Subject) -> Subject:
     """The file states no mass and no shape that a simulator could take one from."""
     folder = Path(tempfile.mkdtemp(prefix="articad-massless-"))
@@ -448,6 +457,8 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "turned": _one_turned_round,
     "reaches": _short,
     "fitted": _larger,
+    "weighs": _larger,
+    "room": _crowded,
     "arranged": _one_aside,
     "handed": _mirror_image,
     "unchanged": _all_new,
