@@ -508,7 +508,7 @@ class Captive(Check):
         held_by = {joint.child for joint in moving(subject)}
         ways = Ways(subject.scene, subject.rest)
         free = [name for name in subject.shaped if name in held_by and any(way.free for way in ways_out(ways, name))]
-        held = len([name for name in subject.shaped if name in moving]) - len(free)
+        held = len([name for name in subject.shaped if name in held_by]) - len(free)
         return self.number[0] <= held <= self.number[1], f"{held}" + (f" (free: {', '.join(free)})" if free else "")
 
 

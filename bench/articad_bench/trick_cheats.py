@@ -38,7 +38,7 @@ def _weightless(task: Task, reference: Assembly) -> Assembly | None:
     """Return the reference of foam, if something of it is to weigh what it is made of."""
     if not _of(task, Weighs):
         return None
-    return _with(reference, {name: Part.from_mesh(name, part.mesh, density=FOAM) for name, part in _shaped(reference).items()})
+    return _with(reference, {name: Part.from_mesh(name, _mesh(reference, name), density=FOAM) for name in _shaped(reference)})
 
 
 def _brimful(task: Task, reference: Assembly) -> Assembly | None:
