@@ -14,7 +14,20 @@ from typing import Final
 from articad.errors import ArticadError
 from articad.kinematics.joints import JointType
 from articad_bench.checks import AnyCheck, Joints, Lead, Made, Moves, Parts, Reaches, moved_shares
-from articad_bench.likeness_checks import DRAWN, PLACE, Arranged, Handed, Matter, Row, arrangement, filled, handedness, moments_of
+from articad_bench.likeness_checks import (
+    DRAWN,
+    PLACE,
+    Arranged,
+    Handed,
+    Matter,
+    Row,
+    Upright,
+    arrangement,
+    filled,
+    handedness,
+    moments_of,
+    turned_over,
+)
 from articad_bench.machined_checks import Machined, Toleranced, fits_stated, machined
 from articad_bench.subject import Subject
 from articad_bench.task import Task
@@ -31,7 +44,16 @@ HANDED: Final = re.compile(
     r"(?<!\bis )(?<!\bare )(?<!\bbe )(?<!\bbeing )(?<!\bmm )\bleft\b(?! out)|\b(right|(anti|counter)?clockwise)\b", re.IGNORECASE
 )
 """Words of a prompt that tell a product from its mirror image; what is left, or left out, is on no side."""
-BOUND: Final = (Moves, Made, Arranged, Handed, Matter, Threads, Machined, Toleranced)
+UP: Final = re.compile(
+    r"\b(above|below|top|bottom|upper|lower|under|underside|upwards?|downwards?|up|down|stands?|standing|tip|foot|feet|floor|ground|hangs?)\b",
+    re.IGNORECASE,
+)
+"""Words of a prompt that say which side is up."""
+FACING: Final = re.compile(r"(?<!\w)[+-][xy]\b|\bx to the right\b|\bleft to right is x\b", re.IGNORECASE)
+"""Words of a prompt that say which end of x or y something lies at."""
+TURNED_OVER: Final = (0.06, 0.15)
+"""By how much the moments of a product that is turned over differ, at least, where a picture shows it, and where a text alone says it."""
+BOUND: Final = (Moves, Made, Arranged, Handed, Upright, Matter, Threads, Machined, Toleranced)
 
 
 def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
@@ -88,7 +110,21 @@ def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
         matter = tuple(round(value, 5 if hand <= HAND else 4) for value in moments_of(subject).tolist())
         loosely = hand <= HAND or _tells_sides(task)
         checks.append(Handed(matter=matter, margin=_rounded(hand / 2) if loosely else 0.0))
-    return checks
+    return [*checks, *_standing(task, subject)]
+
+
+def _standing(task: Task, subject: Subject) -> list[AnyCheck]:
+    """Return the check of which side is up, and which is the front, where a picture or words say it and the reference is another product turned over."""
+    if task.given is not None:
+        return []
+    matter, least = moments_of(subject), TURNED_OVER[0 if task.images else 1]
+    _, over, half = turned_over(subject, matter, faces=True)
+    upright = over if task.images or UP.search(task.prompt) else 0.0
+    facing = half if FACING.search(task.prompt) else 0.0
+    margins = [_rounded(differs / 2) if differs > least else None for differs in (upright, facing)]
+    if margins == [None, None]:
+        return []
+    return [Upright(matter=tuple(round(value, 4) for value in matter.tolist()), over=margins[0], half=margins[1])]
 
 
 def _tells_sides(task: Task) -> bool:

@@ -98,11 +98,14 @@ the suite and how to submit a cheat of your own.
 | backward | its joints go to the other side of rest, where a side is asked for |
 | notched | a corner of its largest part cut off, 1 to 2 % of it, where sheets are given |
 | slipped | its last part beside its place, along its longest side, where sheets are given |
+| stuck | sleeves slide and do not turn, universal joints lean one way alone, what lies on a plane slides one way alone |
+| overturned | upside down, or facing the other way, where the text or a picture says how it stands |
 | other | the reference of another task |
 | given | the product that the task begins with, as it is |
 | short | of a task that begins with a product: joints go half as far from rest |
 | stage | what is given, or the product of another stage, as the answer of a stage of a task with edits |
 | partly | one of several changes of a stage not made: of a part's shape, of a joint, of the couplings |
+| crumbs | after an edit, every part is new by a hair, and as many crumbs on the ground stay as parts were to |
 """
 
 

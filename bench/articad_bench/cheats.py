@@ -23,6 +23,7 @@ from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.plan.resolve import Waiver
 from articad_bench.bindings import shows_hands
 from articad_bench.checks import Freedoms, Joints, Loops, Parts, PartSize, Size
+from articad_bench.likeness_checks import Upright
 from articad_bench.subject import Subject
 from articad_bench.task import Task
 from articad_bench.trick_cheats import TRICKS
@@ -34,7 +35,9 @@ SHELL: Final = 0.98  # of the size of a body, its hollow
 FACTOR: Final = 10.0
 DENSITY: Final = 1000.0  # kg/m³
 DISC_MM: Final = 20.0
+HARDLY: Final = 0.01  # rad or mm
 MIRROR: Final = np.diag([1.0, -1.0, 1.0, 1.0])
+_OF_MORE_WAYS: Final = frozenset({JointType.CYLINDRICAL, JointType.UNIVERSAL, JointType.PLANAR})
 _SIDES: Final = frozenset(
     [
         "left",
@@ -347,6 +350,26 @@ def _coaxial(_task: Task, reference: Assembly) -> Assembly | None:
     return _changed(reference, joints=[*open_, *doubled], couplings=())
 
 
+def _stuck(_task: Task, reference: Assembly) -> Assembly | None:
+    """Return the reference with sleeves, plane slides and universal joints that go as far as before one way, and hardly at all the other ways."""
+    stuck = {joint.name: replace(joint, limits=_main_alone(joint)) for joint in reference.joints if joint.type in _OF_MORE_WAYS}
+    return _changed(reference, joints=[stuck.get(joint.name, joint) for joint in reference.joints]) if stuck else None
+
+
+def _main_alone(joint: Joint) -> JointLimits:
+    lower, upper = ([rest + off for rest in joint.rest[1:]] for off in (-HARDLY, HARDLY))
+    return replace(joint.limits, lower=(joint.limits.lower[0], *lower), upper=(joint.limits.upper[0], *upper))
+
+
+def _overturned(task: Task, reference: Assembly) -> Assembly | None:
+    """Return the reference upside down, or facing the other way, if the task says which side is up, or the front."""
+    check = next((check for check in task.checks if isinstance(check, Upright)), None)
+    if check is None:
+        return None
+    turn = SE3.rot_z(math.pi) if check.over is None else SE3.rot_x(math.pi)
+    return _changed(reference, T_ground=turn @ reference.mechanism.T_ground)
+
+
 CHEATS: Final[Mapping[str, Callable[[Task, Assembly], Assembly | None]]] = {
     "discs": _discs,
     "wires": _wires,
@@ -359,6 +382,8 @@ CHEATS: Final[Mapping[str, Callable[[Task, Assembly], Assembly | None]]] = {
     "merged": _merged,
     "waived": _waived,
     "coaxial": _coaxial,
+    "stuck": _stuck,
+    "overturned": _overturned,
     **TRICKS,
 }
 """Makers of cheats; "other", the reference of another task, is one more."""

@@ -30,13 +30,13 @@ from articad_bench.check import Check as Check  # noqa: PLC0414  (others take th
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
 from articad_bench.edit_checks import Shifted
 from articad_bench.function_checks import Effort, Folds, Passes, PutTogether
-from articad_bench.likeness_checks import Arranged, Handed, Matter
+from articad_bench.likeness_checks import Arranged, Handed, Matter, Upright
 from articad_bench.machined_checks import Machined, Toleranced
 from articad_bench.module_checks import Fitted, Ordered, Spaced, Turned
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.proofs import proven
 from articad_bench.room_checks import Room, Weighs
-from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
+from articad_bench.shape_checks import Holds, Holes, Passage, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
 from articad_bench.spacing_checks import Links, Square
 from articad_bench.stack_checks import Stack
@@ -120,22 +120,40 @@ class Size(Check):
 
 
 class PartSize(Check):
-    """A number of parts with these sides, in any order; None where any length is accepted."""
+    """A number of parts with these sides, in any order; None where any length is accepted.
+
+    Attributes:
+        above: How high the lowest point of such a part lies above that of the whole, at rest [mm].
+        fill: Least share of its box that such a part fills: a board has no window.
+    """
 
     kind: Literal["part_size"] = "part_size"
     mm: tuple[float | None, float | None, float | None]
     number: Bounds = (1, 999)
     tolerance: float = 0.02
+    above: Bounds | None = None
+    fill: float | None = None
 
     @property
     def wanted(self) -> str:
         sides = " x ".join("any" if side is None else f"{side:g}" for side in self.mm)
-        return f"{in_words(self.number)} parts of {sides} mm within {100 * self.tolerance:g} %"
+        above = "" if self.above is None else f", {in_words(self.above)} mm above the ground"
+        fill = "" if self.fill is None else f", filling {100 * self.fill:g} % of their boxes or more"
+        return f"{in_words(self.number)} parts of {sides} mm within {100 * self.tolerance:g} %{above}{fill}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        found = subject.of_size(self.mm, self.tolerance)
+        found = [name for name in subject.of_size(self.mm, self.tolerance) if self._lies(subject, name) and self._fills(subject, name)]
         sizes = ", ".join(f"{name} {_by(subject.extents(name))}" for name in subject.shaped[:12])
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({sizes})"
+
+    def _lies(self, subject: Subject, name: str) -> bool:
+        low, ground = (float(subject.corners(subject.rest, parts)[0, 2]) for parts in ([name], None))
+        return self.above is None or within(low - ground, self.above)
+
+    def _fills(self, subject: Subject, name: str) -> bool:
+        mesh = subject.assembly.parts[name].mesh
+        assert mesh is not None
+        return self.fill is None or abs(mesh.volume) >= self.fill * float(np.prod(subject.boxes(name), axis=1).min())
 
 
 class Mass(Check):
@@ -530,20 +548,35 @@ class Simulates(Check):
 
 
 class Unchanged(Check):
-    """After an edit, the number of parts whose shape is bit-identical to one from before, whatever their names."""
+    """After an edit, the number of parts whose shape is bit-identical to one from before, whatever their names.
+
+    Attributes:
+        of: Whether parts are counted or bodies, that is, what is fixed together; a body is unchanged if all its parts are, so a crumb that stays
+            counts for nothing. The ground is not among those that move.
+    """
 
     kind: Literal["unchanged"] = "unchanged"
     number: Bounds
+    of: Literal["parts", "bodies", "moving bodies"] = "parts"
 
     @property
     def wanted(self) -> str:
-        return f"{in_words(self.number)} parts are unchanged"
+        return f"{in_words(self.number)} {self.of} are unchanged"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         if subject.before is None:
             return False, "nothing was there before"
-        same = (_shapes(subject.before) & _shapes(subject.assembly)).total()
-        return self.number[0] <= same <= self.number[1], f"{same} of {len(subject.shaped)}"
+        before, after = (self._shapes(each) for each in (Subject(subject.before), subject))
+        return self.number[0] <= (same := (before & after).total()) <= self.number[1], f"{same} of {after.total()}"
+
+    def _shapes(self, subject: Subject) -> Counter[tuple[str, ...]]:
+        """Return what is counted, each by the shapes of its parts."""
+        left_out = subject.rigid[subject.assembly.ground] if self.of == "moving bodies" else None
+        found: dict[str, list[str]] = {}
+        for name in subject.shaped:
+            if (body := subject.rigid[name]) != left_out:
+                found.setdefault(name if self.of == "parts" else body, []).append(_digest(subject, name))
+        return Counter(tuple(sorted(shapes)) for shapes in found.values())
 
 
 AnyCheck = Annotated[
@@ -571,6 +604,7 @@ AnyCheck = Annotated[
     | Unchanged
     | Shifted
     | Holes
+    | Passage
     | Studs
     | Wall
     | Volume
@@ -582,6 +616,7 @@ AnyCheck = Annotated[
     | Moves
     | Arranged
     | Handed
+    | Upright
     | Matter
     | Extent
     | Threads
@@ -606,8 +641,10 @@ AnyCheck = Annotated[
 ]
 
 
-def _shapes(assembly: Assembly) -> Counter[str]:
-    return Counter(part.mesh.digest for part in assembly.parts.values() if part.mesh is not None)
+def _digest(subject: Subject, name: str) -> str:
+    mesh = subject.assembly.parts[name].mesh
+    assert mesh is not None
+    return mesh.digest
 
 
 def moved_shares(subject: Subject, joint: Joint) -> list[tuple[float, float]]:

@@ -25,6 +25,7 @@ LARGER: Final = {3: 1.3, 4: 1.04}  # in volume and in size, by column: parts nea
 TURNS: Final = tuple(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]], dtype=np.float64) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1)))
 """What the whole may be turned by about the upright axis: no picture says which way is x."""
 MIRROR: Final = np.diag([1.0, -1.0, 1.0])
+OVER: Final = np.diag([1.0, -1.0, -1.0])
 POWERS: Final = tuple(p for p in product(range(4), repeat=3) if 1 <= sum(p) <= 3)
 _POINT_WEIGHTS: Final = (-0.8, 0.45)  # of the middle of a tetrahedron, and of each point between it and a corner: exact to the third degree
 
@@ -177,6 +178,46 @@ class Handed(Check):
         ways = (TURNS, [turn @ MIRROR for turn in TURNS])
         straight, mirrored = (min(float(np.linalg.norm(moments(_turned(subject, turn)) - wanted)) for turn in turns) for turns in ways)
         return straight, mirrored
+
+
+class Upright(Check):
+    """The product stands and faces as the text or a picture says: turned upside down, or by half about the upright axis, it is not more like that.
+
+    Attributes:
+        matter: Moments of what is wanted, as `moments` gives them.
+        over: By how much it may be more like that upside down than as it stands; None if it may lie on either side.
+        half: By how much it may be more like that turned by half; None if it may be turned by quarters.
+    """
+
+    kind: Literal["upright"] = "upright"
+    matter: tuple[float, ...]
+    over: float | None = None
+    half: float | None = None
+
+    @property
+    def wanted(self) -> str:
+        ways = ["upside down"] * (self.over is not None) + ["back to front"] * (self.half is not None)
+        return f"not {' or '.join(ways)}"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        if not subject.shaped:
+            return False, "nothing has a shape"
+        straight, over, half = turned_over(subject, np.array(self.matter), faces=self.half is not None)
+        ok = all(margin is None or straight < other + margin for margin, other in ((self.over, over), (self.half, half)))
+        return ok, f"differs by {straight:.2g}, upside down by {over:.2g}, back to front by {half:.2g}"
+
+
+def turned_over(subject: Subject, wanted: FloatArray, *, faces: bool) -> tuple[float, float, float]:
+    """Return by how much the moments of a product differ from others as it stands, upside down, and turned by half about the upright axis.
+
+    Args:
+        subject: The product.
+        wanted: The other moments.
+        faces: Whether it is compared as it faces; else turned by the quarters with which it is most alike.
+    """
+    ways = (TURNS[:1] if faces else TURNS, [turn @ OVER for turn in TURNS], TURNS[2:3])
+    straight, over, half = (min(float(np.linalg.norm(moments(_turned(subject, turn)) - wanted)) for turn in turns) for turns in ways)
+    return straight, over, half
 
 
 def handedness(subject: Subject) -> float:

@@ -86,6 +86,7 @@ FOLLOWS: Final = {
     "captive": "words: what cannot come off",
     "arranged": "picture: where the parts lie",
     "handed": "picture, or words of a side",
+    "upright": "picture, or words of what is above, below, in front or behind",
     "unchanged": "edit: what is not to change",
 }
 """Where a check comes from that needs no number in the text."""
@@ -101,6 +102,7 @@ _DRAWN: Final = {
     "lead": "drawing: what the joints do, and how far",
     "travel": "drawing: what the joints do, and how far",
     "rise": "drawing: what the joints do, and how far",
+    "reaches": "drawing: what the joints do, how far, and its words where to",
 }
 """What every drawing states."""
 _ON_SHEETS: Final = _DRAWN | {
@@ -338,6 +340,8 @@ def _values(check: AnyCheck) -> Iterator[Value]:
 def _joint_values(wanted: JointWanted) -> Iterator[Value]:
     if isinstance(wanted.span, tuple):
         yield ("deg" if wanted.type in _TURNING else "mm", *wanted.span)
+    if isinstance(wanted.turn, tuple):
+        yield ("deg", *wanted.turn)
     if wanted.axis is not None:  # a slanted axis leans by so much
         lean = math.degrees(math.acos(min(1.0, abs(wanted.axis[2]) / math.hypot(*wanted.axis))))
         yield from (("deg", round(angle, 2), round(angle, 2)) for angle in (lean, 90 - lean) if 0.1 < angle < 89.9)
@@ -357,8 +361,12 @@ def _bounds(row: Any) -> list[Value]:
 
 
 def _round_values(row: Any) -> list[Value]:
-    bounds = [("mm", *each) for each in (row.length, row.above) if each is not None]
-    return [*_lengths(row, (row.diameter, row.pitch, row.circle, *(row.apart[1] if row.apart else ()))), *bounds]
+    lengths = [] if row.length is None else [("mm", *row.length)]
+    return [*_lengths(row, (row.diameter, row.pitch, row.circle, *(row.apart[1] if row.apart else ()))), *lengths, *_heights(row)]
+
+
+def _heights(row: Any) -> list[Value]:
+    return [] if row.above is None else [("mm", *row.above)]
 
 
 def _ratio_values(row: Any) -> list[Value]:
@@ -389,7 +397,7 @@ def _stack_values(row: Any) -> list[Value]:
 
 _MEASURES: Final[dict[str, Callable[[Any], list[Value]]]] = {
     "size": lambda row: _lengths(row, row.mm),
-    "part_size": lambda row: _lengths(row, row.mm),
+    "part_size": lambda row: [*_lengths(row, row.mm), *_heights(row)],
     **dict.fromkeys(("links", "lead", "square"), lambda row: _lengths(row, [row.mm])),
     **dict.fromkeys(("rise", "level", "gap", "extent", "wall", "reaches", "shifted"), _bounds),
     "spaced": lambda row: [
@@ -402,6 +410,7 @@ _MEASURES: Final[dict[str, Callable[[Any], list[Value]]]] = {
     "straight": lambda row: [("mm", *row.mm), ("mm", row.off, row.off)],
     "travel": lambda row: [("deg" if row.joint.type in _TURNING else "mm", *row.by)],
     **dict.fromkeys(("holes", "studs"), _round_values),
+    "passage": lambda row: _lengths(row, (row.diameter,)),
     **dict.fromkeys(("ratio", "turns"), _ratio_values),
     "mass": lambda row: [("kg", *row.kg)],
     "holds": lambda row: [("ml", *row.ml)],

@@ -12,11 +12,12 @@ from articad.arrays import FloatArray
 from articad.geometry import TriMesh
 from articad_bench.bodies import moved_bodies
 from articad_bench.check import Bounds, Check, Vector, in_words, widened, within
-from articad_bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
+from articad_bench.solids import Round, asymmetry, held_volume, occupied, ray_lengths, rounds, tipping_angle, wall_thickness
 from articad_bench.subject import Subject
 from articad_bench.wanted import JointWanted
 
 SAME_LEVEL_MM: Final = 0.2
+NEAR_WALL: Final = 0.9  # of the radius of a hole
 LEAN: Final = 0.996  # cosine of the 5° by which an axis may lean from the one asked for
 
 
@@ -107,6 +108,35 @@ class Holes(_Rounds):
 
     def _is(self, found: Round) -> bool:
         return found.hollow and self.through in {None, not found.blind}
+
+
+class Passage(Check):
+    """A straight way along the axis of a round hole goes through the whole at rest, nearly as wide as the hole: nothing walls it up.
+
+    `still` leaves out what moves: a valve that is drawn shut has a passage all the same.
+    """
+
+    kind: Literal["passage"] = "passage"
+    diameter: float
+    axis: Vector
+    still: bool = False
+    tolerance: float = 0.02
+
+    @property
+    def wanted(self) -> str:
+        return f"a passage of {self.diameter:g} mm along {self.axis}{', whatever moves in it' if self.still else ''}"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        ground = subject.rigid[subject.assembly.ground]
+        every = zip(subject.shaped, placed(subject), strict=True)
+        meshes = [mesh for name, mesh in every if not self.still or subject.rigid[name] == ground]
+        holes = [found for mesh in meshes for found in rounds(mesh) if self._is(found)]
+        free = sum(_goes_through(meshes, hole, 2 * float(np.linalg.norm(subject.size))) for hole in holes)
+        return free > 0, f"{free} of {len(holes)} such holes are part of one"
+
+    def _is(self, found: Round) -> bool:
+        along = abs(float(found.axis @ np.array(self.axis))) >= LEAN * float(np.linalg.norm(self.axis))
+        return found.hollow and along and abs(2 * found.radius - self.diameter) <= self.tolerance * self.diameter
 
 
 class Studs(_Rounds):
@@ -254,6 +284,17 @@ def _steps(places: list[float]) -> list[float]:
         if not levels or place - levels[-1] > SAME_LEVEL_MM:
             levels.append(place)
     return [float(mm) for mm in np.diff(levels)]
+
+
+def _goes_through(meshes: list[TriMesh], hole: Round, reach: float) -> bool:
+    """Return whether lines along a hole, in its middle and all round near its wall, meet nothing."""
+    u = np.cross(hole.axis, [1.0, 0, 0] if abs(hole.axis[0]) < 0.9 else [0, 1.0, 0])
+    u /= np.linalg.norm(u)
+    angles = np.arange(8) * np.pi / 4 + 0.1
+    beside = NEAR_WALL * hole.radius * (np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * np.cross(hole.axis, u))
+    starts = hole.centre - reach * hole.axis + np.concatenate([np.full((1, 3), 1e-5), beside])
+    ways = np.repeat(hole.axis[None], len(starts), axis=0)
+    return all(np.isinf(ray_lengths(mesh, starts, ways)).all() for mesh in meshes)
 
 
 def _beside(found: Round, point: FloatArray) -> float:

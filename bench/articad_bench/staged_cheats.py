@@ -5,6 +5,7 @@ They are made of the product that is given and of the reference at each stage.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -14,13 +15,18 @@ import numpy as np
 
 from articad.assembly import Assembly
 from articad.certificates.certificate import constrained_joints
+from articad.connectors import SE3
+from articad.geometry import Part, box
 from articad.kinematics import Coupling, Joint
+from articad.kinematics.joints import JointLimits, JointType
 from articad_bench.subject import Subject
 
 __all__ = ["LEFT_OPEN", "STAGED", "StagedCheat", "alike", "staged_cheats"]
 
-STAGED: Final = ("given", "short", "stage", "partly")
+STAGED: Final = ("given", "short", "stage", "partly", "crumbs")
 """Kinds of these cheats."""
+CRUMB_MM: Final = 1.5
+HAIR: Final = 1e-5  # share of its size by which a part is larger
 
 LEFT_OPEN: Final[Mapping[str, tuple[str, ...]]] = {"engine_inline_three": ("block",), "engine_radial": ("case",)}
 """Parts by task that its reference changes in an edit, and that another product need not change: a case for the longer stroke holds the shorter one."""
@@ -69,6 +75,9 @@ def staged_cheats(begun: Assembly | None, stages: Sequence[Assembly], left_open:
             if what in left_open:
                 continue
             yield put("partly", f"{_named(stage)} with {what} as before", make=make)
+        if begun is None and before is not None:
+            kept = _kept(before, right)
+            yield replace(put("crumbs", "", make=partial(_all_new, right, kept)), before=_with_crumbs(before, kept))
     if begun is not None:
         yield StagedCheat("short", "", 0, begun, stages[0], partial(_short, stages[0]))
 
@@ -167,3 +176,56 @@ def _with_couplings(after: Assembly, before: Assembly) -> Assembly:
 
 def _moving(after: Assembly, joints: Sequence[Joint], couplings: Sequence[Coupling]) -> Assembly:
     return replace(after, mechanism=after.mechanism.changed(joints=joints, couplings=couplings))
+
+
+def _kept(before: Assembly, after: Assembly) -> int:
+    """Return how many parts have the shape of one from before."""
+    shapes = [Counter(part.mesh.digest for part in each.parts.values() if part.mesh is not None) for each in (before, after)]
+    return (shapes[0] & shapes[1]).total()
+
+
+def _all_new(after: Assembly, crumbs: int) -> Assembly:
+    """Return a product whose parts are all a hair larger, with crumbs."""
+    parts = {name: _larger(part) for name, part in after.parts.items()}
+    return _with_crumbs(replace(after, parts=parts), crumbs)
+
+
+def _larger(part: Part) -> Part:
+    if part.mesh is None:
+        return part
+    density = 1e9 * part.mass.mass / abs(part.mesh.volume) if part.mass is not None else None
+    return Part.from_mesh(part.name, part.mesh.scaled(1 + HAIR), density=density)
+
+
+def _with_crumbs(assembly: Assembly, number: int) -> Assembly:
+    """Return a product with crumbs one below the other, the first under the lowest corner of the ground."""
+    mesh, mechanism = assembly.parts[assembly.ground].mesh, assembly.mechanism
+    if mesh is None:
+        return assembly
+    corner = mesh.vertices[mesh.vertices[:, 2].argmin()]
+    names = [f"crumb_{i}" for i in range(number)]
+    crumbs = [Part.from_mesh(name, box(CRUMB_MM, CRUMB_MM, CRUMB_MM), density=1000.0) for name in names]
+    joints = [
+        Joint(
+            name=f"{name}_held",
+            type=JointType.FIXED,
+            parent=assembly.ground,
+            child=name,
+            parent_connector=f"{name}_p",
+            child_connector=f"{name}_c",
+            T_parent_connector=SE3.from_translation(corner - np.array([0.0, 0.0, (i + 0.5) * CRUMB_MM])),
+            T_child_connector=SE3.identity(),
+            limits=JointLimits(),
+            rest=(),
+        )
+        for i, name in enumerate(names)
+    ]
+    return Assembly.from_parts(
+        assembly.name,
+        parts=[*assembly.parts.values(), *crumbs],
+        joints=[*assembly.joints, *joints],
+        ground=assembly.ground,
+        couplings=mechanism.couplings,
+        fits=assembly.fits,
+        T_ground=mechanism.T_ground,
+    )

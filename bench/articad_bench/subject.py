@@ -28,6 +28,7 @@ from articad.kinematics.motion import FeasibleRange
 from articad_bench.solids import boxes_by_faces
 
 WATER: Final = 1000.0  # kg/m³
+_TURNING_TOO: Final = frozenset({JointType.CYLINDRICAL, JointType.UNIVERSAL, JointType.PLANAR})
 _SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR})
 _ASIDE: Final = {str(kind): {"x", "y"} for kind in JointType} | {
     str(JointType.BALL): {"x", "y", "z"},
@@ -209,11 +210,18 @@ class Subject:
         return 1.0 if joint.type in _SLIDING else math.degrees(1.0)
 
     def span(self, joint: Joint) -> float:
-        """Return how far a joint is allowed to go by its main coordinate [deg or mm], inf for an endless one; a ball, from side to side."""
+        """Return how far a joint is allowed to go by its main coordinate [deg or mm], inf for an endless one.
+
+        A ball goes from side to side, and a planar joint as far as the longer of its two ways.
+        """
         if joint.type is JointType.BALL:
             return 2 * math.degrees(math.pi if joint.limits.cone is None else joint.limits.cone)
-        width = (joint.limits.upper or (0.0,))[0] - (joint.limits.lower or (0.0,))[0]
-        return width * self.per_unit(joint)
+        widths = _widths(joint) or [0.0]
+        return (max(widths[:2]) if joint.type is JointType.PLANAR else widths[0]) * self.per_unit(joint)
+
+    def turn(self, joint: Joint) -> float:
+        """Return how far a joint is allowed to turn by its last coordinate [deg]: a sleeve about its axis, a universal joint the second way; 0 for others."""
+        return math.degrees(_widths(joint)[-1]) if joint.type in _TURNING_TOO else 0.0
 
     def values(self, joint: str, driver: str, points: FloatArray) -> FloatArray:
         """Return the main coordinate of a joint while a driver takes other values, the others at rest [rad or mm]."""
@@ -281,6 +289,11 @@ def _cranked(assembly: Assembly) -> Assembly:
         if any(drive.joint == crank.name for drive in mechanism.drivers):
             return replace(assembly, mechanism=mechanism)
     return assembly
+
+
+def _widths(joint: Joint) -> list[float]:
+    """Return how wide the range of each coordinate of a joint is [rad or mm]."""
+    return [upper - lower for lower, upper in zip(joint.limits.lower, joint.limits.upper, strict=True)]
 
 
 def _is_endless(lower: float, upper: float) -> bool:

@@ -18,11 +18,12 @@ SPAN_SLACK: Final = 1e-6  # deg or mm: what becomes of a range that is converted
 
 
 class JointWanted(PlanObject):
-    """Which joints are meant: by type, direction of axis at rest and range."""
+    """Which joints are meant: by type, direction of axis at rest and range; `turn` is the range of the second angle, or of the turn beside a slide."""
 
     type: JointType
     axis: Vector | None = None
     span: Bounds | Literal["endless"] | None = None
+    turn: Bounds | Literal["endless"] | None = None
 
     def found(self, subject: Subject) -> list[Joint]:
         """Return the joints of a subject that are like this."""
@@ -33,16 +34,21 @@ class JointWanted(PlanObject):
             return False
         if self.axis is not None and not parallel(subject.axis(joint), np.array(self.axis)):
             return False
-        span = subject.span(joint)
-        if self.span == "endless":
-            return math.isinf(span)
-        return self.span is None or self.span[0] - SPAN_SLACK <= span <= self.span[1] + SPAN_SLACK
+        return _reaches(subject.span(joint), self.span) and (self.turn is None or _reaches(subject.turn(joint), self.turn))
 
     def __str__(self) -> str:
         axis = "" if self.axis is None else f" about or along {in_numbers(self.axis)}"
-        unit = "mm" if self.type in {JointType.SLIDER, JointType.CYLINDRICAL} else "°"
+        unit = "mm" if self.type in {JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR} else "°"
         span = "" if self.span is None else ", endless" if self.span == "endless" else f", range {in_words(self.span)} {unit}"
-        return f"{self.type}{axis}{span}"
+        turn = "" if self.turn is None else ", turns without end" if self.turn == "endless" else f", turns by {in_words(self.turn)} °"
+        return f"{self.type}{axis}{span}{turn}"
+
+
+def _reaches(width: float, wanted: Bounds | Literal["endless"] | None) -> bool:
+    """Return whether a range is as wide as is wanted [deg or mm]."""
+    if wanted == "endless":
+        return math.isinf(width)
+    return wanted is None or wanted[0] - SPAN_SLACK <= width <= wanted[1] + SPAN_SLACK
 
 
 def parallel(a: FloatArray, b: FloatArray) -> bool:

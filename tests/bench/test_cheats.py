@@ -18,7 +18,7 @@ from articad.assembly import Assembly
 from articad.batches.pool import Call
 from articad.connectors import SE3
 from articad.geometry import Part, TriMesh, box, cylinder
-from articad.kinematics.joints import Joint
+from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.resolve import Fit, Waiver
 from articad_bench.bindings import bindings, bound
 from articad_bench.cheat_run import CheatRow, page, refused_by, run_cheats, the_same
@@ -230,7 +230,11 @@ def test_a_mirror_image_is_told_from_what_a_picture_shows_and_another_constructi
     assert check.judge(shown).ok
     assert check.judge(with_handle(22, 16)).ok
     assert not check.judge(with_handle(-25, 12)).ok
-    assert [each.kind for each in bindings(pictured(2), with_handle(0, 12))] == ["matter", "arranged"]  # it is its own mirror image
+    assert [each.kind for each in bindings(pictured(2), with_handle(0, 12))] == [
+        "matter",
+        "arranged",
+        "upright",
+    ]  # it is its own mirror image
     assert [each.kind for each in bindings(task(prompt="A block with a handle."), shown)] == ["matter"]  # nothing tells left from right
 
 
@@ -446,6 +450,22 @@ def test_a_comb_is_no_stack_and_a_stack_on_one_side_is_none_on_both() -> None:
     assert judge(*several, sides=[1, 0, 0])
     halves = [(name, placed(mesh, 0, 0, 0) if name != "b0" else placed(box(4, 10, 4), -3, 0, -2)) for name, mesh in several]
     assert not judge(*halves, sides=[1, 0, 0])
+
+
+def test_a_sleeve_that_is_stuck_slides_and_does_not_turn() -> None:
+    assembly = hinge()
+    (turn,) = assembly.joints
+    limits = JointLimits((0.0, -1.0), (40.0, 1.0))
+    lifted = replace(turn, type=JointType.CYLINDRICAL, rest=(0.0, 0.0), limits=limits)
+    sleeve = Assembly.from_parts("sleeve", parts=assembly.parts.values(), joints=[lifted], ground="plate")
+    wanted = {"type": "cylindrical", "span": [39, 41]}
+
+    (cheat,) = cheats_of(task(), sleeve, ("stuck",))
+
+    assert list(cheats_of(task(), assembly, ("stuck",))) == []
+    assert form({"kind": "joints", "joint": wanted, "number": [1, 1]}).judge(Subject(cheat.assembly)).ok
+    turning = form({"kind": "joints", "joint": wanted | {"turn": [110, 120]}, "number": [1, 1]})
+    assert [turning.judge(Subject(each)).ok for each in (sleeve, cheat.assembly)] == [True, False]
 
 
 def test_no_cheat_of_a_bound_task_passes_and_the_reference_does() -> None:

@@ -48,6 +48,7 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("wardrobe", {"kind": "joints", "joint": {"type": "slider"}, "number": [2, 2]}),
     ("wardrobe", {"kind": "size", "mm": [900, None, 1922]}),
     ("wardrobe", {"kind": "part_size", "mm": [None, None, 1800]}),
+    ("wardrobe", {"kind": "part_size", "mm": DRAWER, "number": [1, 1], "above": [180, 400], "fill": 0.1}),
     ("wardrobe", {"kind": "mass", "kg": [50, 80]}),
     ("wardrobe", {"kind": "solids"}),
     ("wardrobe", {"kind": "clear_at_rest"}),
@@ -63,8 +64,10 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("slider_crank", {"kind": "moves", "joint": {"type": "slider"}, "volume": [0.01, 0.2], "size": [0.1, 0.4]}),
     ("toggle_clamp", {"kind": "simulates"}),
     ("four_bar", {"kind": "unchanged", "number": [8, 8]}),
+    ("four_bar", {"kind": "unchanged", "number": [3, 3], "of": "moving bodies"}),
     ("four_bar", {"kind": "shifted", "axis": [1, 0, 0], "mm": [-0.1, 0.1], "number": [1, 99]}),
     ("toggle_clamp", {"kind": "holes", "diameter": 6.6, "number": [4, 4], "axis": [0, 0, 1], "through": True, "length": [6.9, 7.1]}),
+    ("funnel_kitchen", {"kind": "passage", "diameter": 13, "axis": [0, 0, 1]}),
     ("toggle_clamp", {"kind": "studs", "diameter": 12, "number": [1, 1]}),
     ("desk_lamp", {"kind": "wall", "mm": [1.8, 2.2], "number": [1, 1]}),
     ("wardrobe", {"kind": "volume", "cm3": [50000, 150000]}),
@@ -76,7 +79,7 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("peaucellier_board", {"kind": "straight", "mm": [90, 125], "off": 0.05}),
     ("wiper_tandem", {"kind": "level", "mm": [56, 68], "number": [1, 999]}),
     ("planetary_hoist", {"kind": "turns", "ratio": 4.5, "number": [1, 3]}),
-    *(("hinge_pintle_gate", bound("hinge_pintle_gate", kind)) for kind in ("matter", "arranged", "handed")),
+    *(("hinge_pintle_gate", bound("hinge_pintle_gate", kind)) for kind in ("matter", "arranged", "handed", "upright")),
     ("desk_lamp", {"kind": "extent", "side": "z", "mm": [300, 420]}),
     ("toggle_clamp", {"kind": "threads"}),
     ("plate_motor_mount", {"kind": "square", "mm": 31}),
@@ -341,3 +344,85 @@ def test_what_a_crank_moves_does_not_depend_on_the_order_of_joints_that_state_no
     for axis in ([0, 0, 1], [1, 0, 0]):
         judged = form({"kind": "travel", "joint": {"type": "slider", "axis": axis}, "by": [47.6, 48.4]}).judge(subject)
         assert judged.ok, judged
+
+
+@pytest.mark.parametrize(("turn", "fits"), [("endless", False), ([178, 182], True), ([80, 100], False), (None, True)])
+def test_a_sleeve_turns_as_far_as_is_asked_for(turn: Any, fits: bool) -> None:
+    bodies = [Part.from_mesh(name, box(10, 10, 10), density=1000) for name in ("post", "sleeve")]
+    sleeve = joint("lift", "cylindrical", ("post", at(0)), ("sleeve", at(0)), limits=[(0.0, 40.0), (-math.pi / 2, math.pi / 2)])
+    subject = Subject(Assembly.from_parts("lift", parts=bodies, joints=[sleeve], ground="post"))
+    wanted = {"type": "cylindrical", "span": [39, 41], "turn": turn}
+
+    assert form({"kind": "joints", "joint": wanted, "number": [1, 1]}).judge(subject).ok is fits
+
+
+def test_what_lies_on_a_plane_goes_as_far_as_the_longer_of_its_ways() -> None:
+    bodies = [Part.from_mesh(name, box(10, 10, 10), density=1000) for name in ("table", "puck")]
+    limits = [(-30.0, 30.0), (-100.0, 100.0), (-math.inf, math.inf)]
+    puck = joint("slide", "planar", ("table", at(0)), ("puck", at(0)), limits=limits)
+    subject = Subject(Assembly.from_parts("hockey", parts=bodies, joints=[puck], ground="table"))
+
+    for wanted, fits in (({"span": [199, 201], "turn": "endless"}, True), ({"span": [59, 61]}, False), ({"turn": [0, 300]}, False)):
+        row = {"kind": "joints", "joint": {"type": "planar"} | wanted, "number": [1, 1]}
+        assert form(row).judge(subject).ok is fits
+
+
+@pytest.mark.parametrize(("of", "ok"), [("parts", True), ("bodies", False), ("moving bodies", False)])
+def test_crumbs_that_stay_are_no_bodies_that_stay(of: str, ok: bool) -> None:
+    """An edit that was to leave a lever as it is makes it anew, and leaves a crumb on the plate."""
+
+    def product(plate: float, lever: float) -> Assembly:
+        sizes = {"plate": (plate, 40, 6), "lever": (lever, 8, 8), "crumb": (1, 1, 1)}
+        parts = [Part.from_mesh(name, box(*sides), density=1000) for name, sides in sizes.items()]
+        turn = joint("turn", "revolute", ("plate", at(0)), ("lever", at(0)), limits=[(0.0, 1.0)])
+        return Assembly.from_parts(
+            "lever", parts=parts, joints=[turn, joint("held", "fixed", ("plate", at(0)), ("crumb", at(0)))], ground="plate"
+        )
+
+    check = form({"kind": "unchanged", "number": [1, 9], "of": of})
+
+    assert check.judge(Subject(product(90, 61), before=product(80, 60))).ok is ok
+    assert check.judge(Subject(product(90, 60), before=product(80, 60))).ok
+
+
+@pytest.mark.parametrize(("window", "height", "fits"), [(0.0, 60.0, True), (0.2, 60.0, True), (0.5, 60.0, False), (0.0, 0.0, False)])
+def test_a_board_lies_as_high_as_the_text_says_and_has_no_window(window: float, height: float, fits: bool) -> None:
+    post = box(18, 300, 900)
+    board = m3.Manifold.cube((700, 300, 18), center=True) - m3.Manifold.cube((700 * window, 300 * window, 20), center=True)
+    parts = [Part.from_mesh("post", post, density=1000), Part.from_mesh("board", manifold_mesh(board), density=1000)]
+    held = joint("held", "fixed", ("post", at(359, 0, height + 9 - 450)), ("board", at(0)))
+    subject = Subject(Assembly.from_parts("shelf", parts=parts, joints=[held], ground="post"))
+
+    assert form({"kind": "part_size", "mm": [700, 300, 18], "number": [1, 1], "above": [59, 61], "fill": 0.8}).judge(subject).ok is fits
+    assert form({"kind": "part_size", "mm": [700, 300, 18], "number": [1, 1]}).judge(subject).ok
+
+
+@pytest.mark.parametrize(("height", "fits"), [(20.0, True), (60.0, False)])
+def test_a_hole_lies_as_high_as_the_text_says(height: float, fits: bool) -> None:
+    bore = m3.Manifold.cylinder(30, 8, 8, 64, center=True).rotate((90, 0, 0)).translate((0, 0, height - 50))
+    front = Part.from_mesh("front", manifold_mesh(m3.Manifold.cube((80, 20, 100), center=True) - bore), density=1000)
+    subject = Subject(Assembly.from_parts("front", parts=[front], joints=[], ground="front"))
+
+    assert form({"kind": "holes", "diameter": 16, "number": [1, 1], "above": [19, 21]}).judge(subject).ok is fits
+
+
+@pytest.mark.parametrize(
+    ("wall", "flap", "still", "ok"),
+    [
+        (False, False, False, True),
+        (True, False, False, False),
+        (False, True, False, False),
+        (False, True, True, True),
+        (True, True, True, False),
+    ],
+)
+def test_a_passage_that_is_walled_up_is_none(wall: bool, flap: bool, still: bool, ok: bool) -> None:
+    """A pipe with a thin wall across it far from its ends, and a flap in front of it that moves."""
+    body = m3.Manifold.cylinder(200, 20, 20, 64, center=True) - m3.Manifold.cylinder(210, 15, 15, 64, center=True)
+    pipe = Part.from_mesh("pipe", manifold_mesh(body + m3.Manifold.cylinder(1, 16, 16, 64, center=True) if wall else body), density=1000)
+    door = Part.from_mesh("flap", box(40, 40, 4), density=1000)
+    turn = joint("turn", "revolute", ("pipe", at(0, 0, 110 if flap else 300)), ("flap", at(0)), limits=[(0.0, 1.0)])
+    aside = joint("turn", "revolute", ("pipe", at(100, 0, 110)), ("flap", at(0)), limits=[(0.0, 1.0)])
+    subject = Subject(Assembly.from_parts("valve", parts=[pipe, door], joints=[turn if flap else aside], ground="pipe"))
+
+    assert form({"kind": "passage", "diameter": 30, "axis": [0, 0, 1], "still": still}).judge(subject).ok is ok

@@ -141,3 +141,16 @@ def test_an_answer_of_a_stage_is_held_to_the_checks_of_that_stage() -> None:
         ("edit 1 in place of the first product", None),
         ("the first product in place of edit 1", "size"),
     }
+
+
+def test_crumbs_stay_where_parts_were_to() -> None:
+    first, second = product(), product(plate=90)
+    (cheat,) = (cheat for cheat in staged_cheats(None, [first, second]) if cheat.kind == "crumbs")
+    after = cheat.make()
+    assert after is not None
+    assert cheat.before is not None
+    shapes = [{part.mesh.digest for part in each.parts.values() if part.mesh is not None} for each in (cheat.before, after)]
+
+    assert len(after.parts) == len(cheat.before.parts) == 3 + 2
+    assert len(shapes[0] & shapes[1]) == 1  # the crumbs alone, which are all alike
+    assert [cheat for cheat in staged_cheats(first, [second]) if cheat.kind == "crumbs"] == []

@@ -10,6 +10,7 @@ from itertools import pairwise
 import pytest
 
 from articad.assembly import Assembly
+from articad.geometry import Part
 from articad.kinematics import Mechanism
 from articad.plan.resolve import resolve
 from articad_bench.checks import Joints
@@ -90,13 +91,22 @@ def _asks_for_a_change(task: Task, begun: Assembly) -> None:
 
 
 def _refuses_another_change(task: Task, stage: int, before: Assembly, after: Assembly) -> None:
-    """Whoever changes one part more than was asked for, and those like it, does not pass."""
+    """Whoever changes one part more than may change, and those like it, does not pass."""
     (check,) = (check for check in task.stages[stage] if check.kind == "unchanged")
     kept = {part.mesh.digest for part in before.parts.values() if part.mesh is not None}
-    mesh = next(part.mesh for part in after.parts.values() if part.mesh is not None and part.mesh.digest in kept)
-    alike = [part for part in after.parts.values() if part.mesh is not None and part.mesh.digest == mesh.digest]
-    more = changed(after, [shaped_as(part, mesh.scaled(1.01)) if part in alike else part for part in after.parts.values()])
+    subject = Subject(after)
+    left_out = subject.rigid[after.ground] if check.of == "moving bodies" else None
+    shapes = [part.mesh.digest for name, part in after.parts.items() if part.mesh is not None and subject.rigid[name] != left_out]
+    stay = [digest for digest in shapes if digest in kept]
+    spoilt = set(stay[: max(len(stay) - int(check.number[0]), 0) + 1])
+    more = changed(
+        after, [_spoilt(part) if part.mesh is not None and part.mesh.digest in spoilt else part for part in after.parts.values()]
+    )
     assert not check.judge(Subject(more, before=before)).ok
+
+
+def _spoilt(part: Part) -> Part:
+    return shaped_as(part, None if part.mesh is None else part.mesh.scaled(1.01))
 
 
 def test_no_product_is_asked_for_more_than_three_times() -> None:

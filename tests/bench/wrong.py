@@ -336,6 +336,14 @@ def _mirror_image(_check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, parts))
 
 
+def _upside_down(_check: Check, subject: Subject) -> Subject:
+    """It lies on its head, or faces the other way."""
+    T = subject.assembly.mechanism.T_ground
+    turns = (SE3.rot_x(np.pi), SE3.rot_z(np.pi))
+    found = [Subject(changed(subject.assembly, T_ground=turn @ T)) for turn in turns]
+    return next((each for each in found if not _check.judge(each).ok), found[0])
+
+
 def _longer(check: Check, subject: Subject) -> Subject:
     """A rod reaches far beyond what is allowed, to all sides."""
     reach = 3 * check.mm[1]  # type: ignore[attr-defined]
@@ -461,9 +469,11 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "room": _crowded,
     "arranged": _one_aside,
     "handed": _mirror_image,
+    "upright": _upside_down,
     "unchanged": _all_new,
     "shifted": _all_new,
     "holes": _larger,
+    "passage": _larger,
     "studs": _larger,
     "wall": _larger,
     "volume": _larger,
