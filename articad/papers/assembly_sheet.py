@@ -91,13 +91,19 @@ def _draw_section(sheet: DrawingSheet, drawn: DrawnView, room: tuple[float, floa
     scale = next((s for s in SCALES if (high - low)[0] * s <= wide and (high - low)[1] * s <= tall), SCALES[-1])
     origin = np.array([0.5 * (room[0] + room[2]), room[1] + 0.5 * tall]) - 0.5 * scale * (low + high)
     sheet.strokes += [SheetLine("visible", on_paper(line, (float(origin[0]), float(origin[1])), scale)) for line in drawn.visible]
-    for index, loops in enumerate(drawn.cut):
+    for index, loops in enumerate(sorted(drawn.cut, key=_corner)):
         turn = np.array([1.0 if index % 2 == 0 else -1.0, 1.0])
         for start, end in hatched([turn * (origin + scale * loop) for loop in loops]):
             sheet.line("hatch", *(turn * start), *(turn * end))
     middle, above = 0.5 * (room[0] + room[2]), float(origin[1] + scale * high[1]) + 3.5
     told = "" if scale == sheet.scale else f" ({ratio(scale)})"
     sheet.texts.append(Lettering(middle, above, f"{drawn.name}{told}", LARGE, "middle", bold=True))
+
+
+def _corner(loops: Sequence[FloatArray]) -> tuple[float, ...]:
+    """Return the least corner of a cut face and its size, rounded: an order that is the same on every machine."""
+    points = np.concatenate(loops)
+    return tuple(np.round([*points.min(axis=0), *np.ptp(points, axis=0)], 3).tolist())
 
 
 def _seen(assembly: Assembly, items: Sequence[Item]) -> dict[int, FloatArray]:
