@@ -231,8 +231,11 @@ def test_a_certificate_is_verified_and_a_forged_one_refuted(chest: Path, tmp_pat
     code, certified = report("certify", out, "--budget", "60")
     assert (code, certified["ok"]) == (0, True)
     code, verified = report("verify-certificate", out / "certificate.json")
-    assert (code, verified["stated"]) == (0, ["Proven while all of these joints move at once, each over its whole range: hinge."])
-    assert report("verify-certificate", out) == (code, verified)
+    proven = "Proven while all of these joints move at once, each over its whole range: hinge."
+    alone = "It was compared with no product: to hold it against the parts and joints of a run, name the run's folder."
+    assert (code, verified["stated"]) == (0, [proven, alone])
+    code, verified = report("verify-certificate", out)
+    assert (code, verified["stated"]) == (0, [proven, "Its parts and joints are those that the run records."])
     code, loose = report("certify", out, "--budget", "60", "--tolerance-class", "f")
     assert loose["tolerance"]["class"] == "f"
     assert code == (0 if loose["ok"] else 1)
@@ -247,6 +250,7 @@ def test_a_certificate_is_verified_and_a_forged_one_refuted(chest: Path, tmp_pat
         "The certificate is not ok",
         "These joints were not requested",
         *["Waived, so not checked"] * len(certified["pairs"]),
+        "It was compared with no product",
     ]
     certified["claims"] = certified["claims"][:-1]
     (out / "certificate.json").write_text(json.dumps(certified))
@@ -257,6 +261,32 @@ def test_a_certificate_is_verified_and_a_forged_one_refuted(chest: Path, tmp_pat
     code, refused = report("verify-certificate", out)
     assert code == 3
     assert f"articad certify {out}" in json.dumps(refused)
+
+
+def test_a_genuine_certificate_of_another_product_is_refuted(chest: Path, tmp_path: Path, report: Any) -> None:
+    mine, other = tmp_path / "mine", tmp_path / "other"
+    for out, more in ((mine, ()), (other, ("--set", "width=70"))):
+        assert report("build", chest, "--out", out, *more)[0] == 0
+        assert report("certify", out, "--budget", "60")[0] == 0
+        assert report("verify-certificate", out)[1]["ok"]
+    for name in ("certificate.json", "certificate"):
+        (mine / name).rename(tmp_path / name)
+        (other / name).rename(mine / name)
+    code, strange = report("verify-certificate", mine)
+    assert (code, strange["ok"], strange["stated"]) == (1, False, [])
+    assert strange["faults"] == ["it is about other parts than the run's: box, lid"]
+    assert report("verify-certificate", mine / "certificate.json")[1]["ok"]
+
+
+def test_a_certificate_of_a_plan_that_has_changed_since_is_refuted(chest: Path, tmp_path: Path, report: Any) -> None:
+    out = tmp_path / "out"
+    assert report("build", chest, "--out", out)[0] == 0
+    assert report("certify", out, "--budget", "60")[0] == 0
+    plan = json.loads((out / "plan.json").read_text())
+    plan["joints"][0]["angle_deg"][0] = -60
+    (out / "plan.json").write_text(json.dumps(plan))
+    code, stale = report("verify-certificate", out)
+    assert (code, [fault.partition(":")[0] for fault in stale["faults"]]) == (1, ["it is about other joints than the run's"])
 
 
 def test_check_needs_no_script(chest: Path, report: Any) -> None:

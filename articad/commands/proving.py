@@ -85,8 +85,13 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
         )
         raise ReadError.at(str(file), message, hint, said=message)
     with terminal.progress("Checking"):
-        faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
-    stated = [] if faults else _stated(json.loads(read_file(file, TEXT)))
+        meshes = Path(options.meshes) if options.meshes else file.parent / "certificate"
+        faults = verify_file(file, meshes)
+    stated: list[str] = []
+    if not faults:
+        certificate = json.loads(read_file(file, TEXT))
+        faults, product = _compared(named, certificate, meshes)
+        stated = [] if faults else [*_stated(certificate), product]
     is_unread = any(fault.startswith(UNREAD) for fault in faults)
     advice = ["Prove some joints at a time: articad certify RUN --joints A,B"] if is_unread else []
     for line in [*faults, *stated, *advice]:
@@ -94,6 +99,17 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
     verdict = "accepted" if not faults else "not checked" if is_unread else "refuted"
     terminal.say(f"{file}: {verdict}.")
     return {"schema": "articad.verification/1", "ok": not faults, "file": str(file), "faults": faults, "stated": stated, "findings": []}
+
+
+def _compared(named: Path, certificate: Report, meshes: Path) -> tuple[list[str], str]:
+    """Return how a certificate is about another product than the run beside it, and what an accepted one was compared with."""
+    from articad.runs.record import departures
+    from articad.runs.run import REQUEST_FILE, Run
+
+    run = Run.view(named) if named.is_dir() and (named / REQUEST_FILE).exists() else None
+    if run is None or run.plan_text() is None:
+        return [], "It was compared with no product: to hold it against the parts and joints of a run, name the run's folder."
+    return departures(run, certificate, meshes), "Its parts and joints are those that the run records."
 
 
 def _stated(certificate: Report) -> list[str]:

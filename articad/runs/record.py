@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from articad import formats
 from articad.aliases import Progress
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.bounds import values_in
-from articad.certificates.certificate import Certificate
+from articad.certificates.certificate import Certificate, mechanism_json
 from articad.certificates.verifier import verify_file
-from articad.certificates.verifier_files import BYTES, ROOM, TEXT, VALUES, room
+from articad.certificates.verifier_files import BYTES, ROOM, TEXT, VALUES, arrays_in, room
 from articad.connectors.connector import Connector
 from articad.errors import ReadError
 from articad.findings import Finding, Findings
@@ -25,6 +28,7 @@ from articad.kernels.choice import Sandbox, kernel_named
 from articad.kernels.kernel import BuildCache
 from articad.kernels.parts import RealisedPart
 from articad.plan.brief import brief
+from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.processes import scratch
 from articad.report import Documents, report_page
@@ -35,6 +39,7 @@ Report = dict[str, Any]
 
 HURRIED: Final = {"W_BUILD_UNCHECKED"}  # findings of a machine that was too slow: only in the trace, or no replay would be equal
 _KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step", "part.FCStd", "seat.json")
+_SAME_MM: Final = 1e-6  # between corners of two meshes that processors may round otherwise
 
 
 def record_assembly(run: Run, assembly: Assembly) -> None:
@@ -114,6 +119,54 @@ def record_certificate(run: Run, certificate: Certificate) -> Report:
         report = certificate.to_json()
     _save_certificate(run, certificate, report, meshes)
     return report
+
+
+def departures(run: Run, certificate: Report, meshes: Path) -> list[str]:
+    """Return how a certificate is about another product than the plan and the parts that a run records; nothing is built for that.
+
+    Args:
+        run: The run.
+        certificate: A certificate that its checker accepts.
+        meshes: The folder of its meshes.
+
+    Raises:
+        ReadError: If the run has no plan.
+        PlanError: If its plan cannot be resolved.
+    """
+    parameters: Mapping[str, float] = run.request.options.get("parameters") or {}
+    resolved = resolve(_plan_of(run), **parameters)
+    made = {name: (run.part(name) or {}).get("shape", {}).get("mesh_sha256") for name in run.part_names()}
+    proven = {name: mesh["sha256"] for name, mesh in certificate["meshes"].items()}
+    images = {
+        name: part.derivation for name, part in resolved.parts.items() if part.derivation is not None and part.derivation.S is not None
+    }
+    strange = {name for name in made.keys() | proven.keys() if made.get(name) != proven.get(name)} - images.keys()
+    strange |= {name for name, how in images.items() if not _is_image(name, how.source, how.S, proven, meshes)}
+    found = [f"it is about other parts than the run's: {_some(sorted(strange))}"] if strange else []
+    if json.loads(json.dumps(mechanism_json(resolved.mechanism))) != certificate["mechanism"]:
+        found.append("it is about other joints than the run's: their frames, limits or couplings differ")
+    return found
+
+
+def _is_image(name: str, source: str, S: FloatArray | None, proven: Collection[str], meshes: Path) -> bool:
+    """Return whether one mesh of a certificate is the mirror image of another one: a record of it would state the kernel's own image."""
+    if S is None or name not in proven or source not in proven:
+        return name not in proven and source not in proven
+    arrays = arrays_in(meshes, [name, source])
+    expected = arrays[source]["vertices"] @ S[:3, :3].T + S[:3, 3]
+    vertices = arrays[name]["vertices"]
+    return bool(vertices.shape == expected.shape and np.abs(vertices - expected).max(initial=0.0) <= _SAME_MM)
+
+
+def _some(names: Sequence[str], most: int = 5) -> str:
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+
+
+def _plan_of(run: Run) -> AssemblyPlan:
+    text = run.plan_text()
+    if text is None:
+        raise ReadError(f"{run.path} has no plan yet.", path=str(run.path), where="plan.json")
+    return AssemblyPlan.loads(text)
 
 
 def _save_certificate(run: Run, certificate: Certificate, report: Report, meshes: Mapping[str, bytes]) -> None:
@@ -248,10 +301,7 @@ def assembly_of(run: Run, *, cache: BuildCache | None = None, sandbox: Sandbox =
         ReadError: If the run has no plan, or not all parts.
         ArticadError: The errors of building.
     """
-    text = run.plan_text()
-    if text is None:
-        raise ReadError(f"{run.path} has no plan yet.", path=str(run.path), where="plan.json")
-    plan = AssemblyPlan.loads(text)
+    plan = _plan_of(run)
     scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
     parameters: Mapping[str, float] = run.request.options.get("parameters", {})
     kernel = kernel_named(str(run.request.options.get("kernel", plan.kernel)), sandbox=sandbox)
