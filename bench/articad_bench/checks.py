@@ -552,12 +552,12 @@ class Unchanged(Check):
 
     Attributes:
         of: Whether parts are counted or bodies, that is, what is fixed together; a body is unchanged if all its parts are, so a crumb that stays
-            counts for nothing. The ground is not among those that move.
+            counts for nothing. What is fixed to the ground is not among those that move.
     """
 
     kind: Literal["unchanged"] = "unchanged"
     number: Bounds
-    of: Literal["parts", "bodies", "moving bodies"] = "parts"
+    of: Literal["parts", "bodies", "moving parts", "moving bodies"] = "parts"
 
     @property
     def wanted(self) -> str:
@@ -571,11 +571,11 @@ class Unchanged(Check):
 
     def _shapes(self, subject: Subject) -> Counter[tuple[str, ...]]:
         """Return what is counted, each by the shapes of its parts."""
-        left_out = subject.rigid[subject.assembly.ground] if self.of == "moving bodies" else None
+        left_out = subject.rigid[subject.assembly.ground] if self.of.startswith("moving") else None
         found: dict[str, list[str]] = {}
         for name in subject.shaped:
             if (body := subject.rigid[name]) != left_out:
-                found.setdefault(name if self.of == "parts" else body, []).append(_digest(subject, name))
+                found.setdefault(name if self.of.endswith("parts") else body, []).append(_digest(subject, name))
         return Counter(tuple(sorted(shapes)) for shapes in found.values())
 
 

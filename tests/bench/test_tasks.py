@@ -95,7 +95,7 @@ def _refuses_another_change(task: Task, stage: int, before: Assembly, after: Ass
     (check,) = (check for check in task.stages[stage] if check.kind == "unchanged")
     kept = {part.mesh.digest for part in before.parts.values() if part.mesh is not None}
     subject = Subject(after)
-    left_out = subject.rigid[after.ground] if check.of == "moving bodies" else None
+    left_out = subject.rigid[after.ground] if check.of.startswith("moving") else None
     shapes = [part.mesh.digest for name, part in after.parts.items() if part.mesh is not None and subject.rigid[name] != left_out]
     stay = [digest for digest in shapes if digest in kept]
     spoilt = set(stay[: max(len(stay) - int(check.number[0]), 0) + 1])
