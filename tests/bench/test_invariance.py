@@ -73,7 +73,13 @@ def renamed(assembly: Assembly) -> Assembly:
     joints = [replace(j, name=pins[j.name], parent=names[j.parent], child=names[j.child]) for j in reversed(assembly.joints)]
     couplings = [replace(c, a=column(c.a), b=column(c.b)) for c in assembly.mechanism.couplings]
     return Assembly.from_parts(
-        "renamed", parts=parts, joints=joints, ground=names[assembly.ground], couplings=couplings, T_ground=assembly.mechanism.T_ground
+        "renamed",
+        parts=parts,
+        joints=joints,
+        ground=names[assembly.ground],
+        couplings=couplings,
+        fits={pins[name]: fit for name, fit in assembly.fits.items()},
+        T_ground=assembly.mechanism.T_ground,
     )
 
 
