@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from articad.arrays import FloatArray, IntArray
 from articad.geometry import TriMesh
-from articad.kinematics.joints import JointType
+from articad.kinematics.joints import Joint, JointType
 from articad_bench.beams import Bent, Support, beam
 from articad_bench.check import Bounds, Check, in_words, within
 from articad_bench.subject import Subject
@@ -225,15 +225,23 @@ def _carriers(subject: Subject, board: str) -> list[str]:
         fresh = {other for name in fresh for other in around.get(name, ())} - reached - {board}
         reached |= fresh
     jointed = {name for joint in subject.assembly.joints if board in (joint.parent, joint.child) for name in (joint.parent, joint.child)}
+    jointed |= {name for name in subject.shaped if _joints_between(subject, board, name)}
     beside = (_near(subject, board, TOUCH_MM) | (_near(subject, board, PLAY_MM) & jointed)) - {board}
     return [name for name in subject.shaped if name in beside & reached]
+
+
+def _joints_between(subject: Subject, board: str, carrier: str) -> list[Joint]:
+    """Return the joints between a part and the body of a board: the pin of its hinge may be fixed to it."""
+    body = subject.rigid[board]
+    sides = ((joint, {joint.parent, joint.child}) for joint in subject.assembly.joints if joint.type is not JointType.FIXED)
+    return [joint for joint, ends in sides if carrier in ends and body in {subject.rigid[name] for name in ends - {carrier}}]
 
 
 def _supports(subject: Subject, name: str, carrier: str, axis: FloatArray, strip: tuple[FloatArray, float, float] | None) -> list[Support]:
     """Return where along an axis a part carries a board: within a strip of it, beside which nothing counts, or anywhere across it."""
     board = _placed(subject, name)
     fixed = subject.rigid[name] == subject.rigid[carrier]
-    joints = [j for j in subject.assembly.joints if {j.parent, j.child} == {name, carrier} and j.type is not JointType.FIXED]
+    joints = _joints_between(subject, name, carrier)
     low, high = board.bounds
     near = PLAY_MM if joints and not fixed else TOUCH_MM
     top = high[2] + near if fixed or joints else low[2] + near  # else it only pushes
