@@ -280,6 +280,18 @@ def _leaning(check: Check, subject: Subject) -> Subject:
     )
 
 
+def _of_another_wall(check: Check, subject: Subject) -> Subject:
+    """Walls of another thickness; where none may be thin, all are foils."""
+    if check.number[1] > 0:  # type: ignore[attr-defined]
+        return _larger(check, subject)
+    thick = 0.5 * sum(check.mm)  # type: ignore[attr-defined]
+    parts = [
+        part if (mesh := part.mesh) is None else shaped_as(part, mesh.scaled(thick / float(np.ptp(mesh.bounds, axis=0).min())))
+        for part in subject.assembly.parts.values()
+    ]
+    return Subject(changed(subject.assembly, parts))
+
+
 def _thin(check: Check, subject: Subject) -> Subject:
     """What a joint carries is too small for it."""
     names = {joint.child for joint in check.joint.found(subject)}  # type: ignore[attr-defined]
@@ -475,7 +487,7 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "holes": _larger,
     "passage": _larger,
     "studs": _larger,
-    "wall": _larger,
+    "wall": _of_another_wall,
     "volume": _larger,
     "holds": _larger,
     "stands": _heavy_beside,
