@@ -241,7 +241,7 @@ def _supports(subject: Subject, name: str, carrier: str, axis: FloatArray, strip
     """Return where along an axis a part carries a board: within a strip of it, beside which nothing counts, or anywhere across it."""
     board = _placed(subject, name)
     fixed = subject.rigid[name] == subject.rigid[carrier]
-    joints = _joints_between(subject, name, carrier)
+    joints = [j for j in subject.assembly.joints if {j.parent, j.child} == {name, carrier} and j.type is not JointType.FIXED]
     low, high = board.bounds
     near = PLAY_MM if joints and not fixed else TOUCH_MM
     top = high[2] + near if fixed or joints else low[2] + near  # else it only pushes
