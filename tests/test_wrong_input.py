@@ -347,7 +347,9 @@ def test_interrupted_work_ends_with_130_and_the_same_command_goes_on(work: Path,
     (work / "chest/parts/lid.py").write_text(slow)
     words = [sys.executable, "-m", "articad.cli", "build", "chest", "--out", "new", *QUICK]
     building = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=os.environ.copy())
-    time.sleep(4.0)
+    until = time.monotonic() + 60
+    while not (work / "new" / "request.json").exists() and time.monotonic() < until:
+        time.sleep(0.05)
     building.send_signal(signal.SIGINT)
     said, _ = building.communicate(timeout=60)
     assert (building.returncode, "Traceback" in said) == (INTERRUPTED, False)
