@@ -7,7 +7,7 @@ from typing import Final
 __all__ = ["TEXT_BYTES", "TEXT_VALUES", "values_in"]
 
 TEXT_BYTES: Final = 128 << 20
-"""Of a file that a command parses whole: a certificate, or a file of cases."""
+"""Of a file of cases, which is parsed whole; the checker of certificates has bounds of its own."""
 TEXT_VALUES: Final = 6_000_000
 """In such a file."""
 

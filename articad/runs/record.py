@@ -137,20 +137,19 @@ def departures(run: Run, certificate: Report, meshes: Path) -> list[str]:
     resolved = resolve(_plan_of(run), **parameters)
     made = {name: (run.part(name) or {}).get("shape", {}).get("mesh_sha256") for name in run.part_names()}
     proven = {name: mesh["sha256"] for name, mesh in certificate["meshes"].items()}
-    images = {
-        name: part.derivation for name, part in resolved.parts.items() if part.derivation is not None and part.derivation.S is not None
-    }
+    derived = {name: part.derivation for name, part in resolved.parts.items() if part.derivation is not None}
+    images = {name: (how.source, how.S) for name, how in derived.items() if how.S is not None}
     strange = {name for name in made.keys() | proven.keys() if made.get(name) != proven.get(name)} - images.keys()
-    strange |= {name for name, how in images.items() if not _is_image(name, how.source, how.S, proven, meshes)}
+    strange |= {name for name, image in images.items() if not _is_image(name, *image, proven, meshes)}
     found = [f"it is about other parts than the run's: {_some(sorted(strange))}"] if strange else []
     if json.loads(json.dumps(mechanism_json(resolved.mechanism))) != certificate["mechanism"]:
         found.append("it is about other joints than the run's: their frames, limits or couplings differ")
     return found
 
 
-def _is_image(name: str, source: str, S: FloatArray | None, proven: Collection[str], meshes: Path) -> bool:
+def _is_image(name: str, source: str, S: FloatArray, proven: Collection[str], meshes: Path) -> bool:
     """Return whether one mesh of a certificate is the mirror image of another one: a record of it would state the kernel's own image."""
-    if S is None or name not in proven or source not in proven:
+    if name not in proven or source not in proven:
         return name not in proven and source not in proven
     arrays = arrays_in(meshes, [name, source])
     expected = arrays[source]["vertices"] @ S[:3, :3].T + S[:3, 3]
