@@ -21,12 +21,13 @@ from articad.processes import scratch
 from articad_bench.bindings import DETAIL
 from articad_bench.cheats import CHEATS
 from articad_bench.check import Check
+from articad_bench.feature_cheats import FEATURELESS, feature_cheats
 from articad_bench.heading import QUARTERS, is_directed
 from articad_bench.likeness_checks import handedness
 from articad_bench.reference import given, reference, reference_folders, references
 from articad_bench.shape_checks import placed, same_parts
 from articad_bench.solids import occupied
-from articad_bench.staged_cheats import LEFT_OPEN, STAGED, StagedCheat, alike, staged_cheats
+from articad_bench.staged_cheats import STAGED, StagedCheat, alike, staged_cheats
 from articad_bench.subject import Subject
 from articad_bench.task import Task, read_json, read_task
 
@@ -57,6 +58,8 @@ _SOURCES: Final = (
     "heading.py",
     "cheats.py",
     "staged_cheats.py",
+    "feature_cheats.py",
+    "script_faults.py",
     "trick_cheats.py",
     "room_checks.py",
     "bodies.py",
@@ -106,6 +109,7 @@ the suite and how to submit a cheat of your own.
 | stage | what is given, or the product of another stage, as the answer of a stage of a task with edits |
 | partly | one of several changes of a stage not made: of a part's shape, of a joint, of the couplings |
 | crumbs | after an edit, every part is new by a hair, and as many crumbs on the ground stay as parts were to |
+| featureless | the reference without one of the cuts or bodies that its scripts make, where the task does not leave it open |
 """
 
 
@@ -238,7 +242,8 @@ def _tried(
     cheats = [put(kind, make=partial(make, task, stages[0])) for kind, make in CHEATS.items()]
     if other is not None:
         cheats.append(put("other", make=partial(reference, *other, cache=cache, kernel=kernel)))
-    for cheat in (*cheats, *staged_cheats(begun, stages, LEFT_OPEN.get(task.name, ()))):
+    cheats += [*staged_cheats(begun, stages, task.left_open), *feature_cheats(folder, task, stages[0], begun, cache, kernel)]
+    for cheat in cheats:
         row = _judged(task, cheat, digest)
         if row is not None:
             rows.append(row)
@@ -358,7 +363,7 @@ def page(report: Mapping[str, Any], rows: Sequence[CheatRow]) -> str:
         )
     lines.append("| cheat | tried | same | pass | refused by |")
     lines.append("|---|---|---|---|---|")
-    for kind in (*CHEATS, "other", *STAGED):
+    for kind in (*CHEATS, "other", *STAGED, FEATURELESS):
         mine = [row for row in rows if row.cheat == kind]
         by = Counter(row.refused_by for row in mine if row.refused_by)
         told = ", ".join(f"{check} {count}" for check, count in by.most_common())

@@ -14,7 +14,7 @@ from articad.assembly import Assembly
 from articad.errors import ReadError
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.kernels.parts import SCRIPT_SUFFIX, read_script
+from articad.kernels.parts import script_file, script_of
 from articad.plan.resolve import resolve
 from articad.plan.schema import PLAN_FILE, AssemblyPlan
 from articad_bench.task import Task
@@ -77,13 +77,37 @@ def reference_plan(folder: Path, task: Task) -> AssemblyPlan:
     return _plan(_folders(folder, task))
 
 
-def reference(folder: Path, task: Task, *, cache: BuildCache | None = None, kernel: PartKernel | None = None) -> Assembly:
+def reference(
+    folder: Path,
+    task: Task,
+    *,
+    scripts: Mapping[str, str] | None = None,
+    cache: BuildCache | None = None,
+    kernel: PartKernel | None = None,
+) -> Assembly:
     """Build a task's reference solution, as it is at first.
+
+    Args:
+        folder: Of the task.
+        task: The task.
+        scripts: Scripts of parts in place of its own.
+        cache: Keeps built parts.
+        kernel: Builds the scripts; what the plan names by default.
 
     Raises:
         ArticadError: If it has none, or it does not build.
     """
-    return _built(_folders(folder, task), {}, cache, kernel)
+    return _built(_folders(folder, task), {}, cache, kernel, scripts)
+
+
+def reference_scripts(folder: Path, task: Task) -> dict[str, str]:
+    """Return the script of each part that the reference solution has of its own, by the part's name.
+
+    Raises:
+        ArticadError: If it has no reference, or one of its files cannot be read.
+    """
+    plan, place = reference_plan(folder, task), reference_folder(folder, task) / "parts"
+    return {name: script.decode() for name, script in _scripts([place], plan, kernel_named(plan.kernel)).items()}
 
 
 def given(folder: Path, task: Task, *, cache: BuildCache | None = None, kernel: PartKernel | None = None) -> Assembly | None:
@@ -133,17 +157,26 @@ def _plan(folders: Sequence[Path]) -> AssemblyPlan:
     return AssemblyPlan.load(next((folder for folder in folders if (folder / PLAN_FILE).exists()), folders[0]))
 
 
-def _built(folders: Sequence[Path], values: Mapping[str, float], cache: BuildCache | None, kernel: PartKernel | None) -> Assembly:
+def _built(
+    folders: Sequence[Path],
+    values: Mapping[str, float],
+    cache: BuildCache | None,
+    kernel: PartKernel | None,
+    changed: Mapping[str, str] | None = None,
+) -> Assembly:
     plan = _plan(folders)
     kernel = kernel or kernel_named(plan.kernel)
-    parts = [folder / "parts" for folder in folders]
-    scripts = parts[0] if len(parts) == 1 else _scripts(parts, plan, kernel)
+    scripts = _scripts([folder / "parts" for folder in folders], plan, kernel)
+    scripts |= {name: text.encode() for name, text in (changed or {}).items()}
     return Assembly.from_plan(plan, scripts, cache=cache, kernel=kernel, parameters=values or None)
 
 
 def _scripts(folders: Sequence[Path], plan: AssemblyPlan, kernel: PartKernel) -> dict[str, bytes]:
     """Return the script of each part that is not derived, from the first folder that has one."""
-    suffix = SCRIPT_SUFFIX[kernel.name]
-    names = [name for name, part in resolve(plan).parts.items() if part.derivation is None]
-    files = {name: next((file for folder in folders if (file := folder / f"{name}{suffix}").is_file()), None) for name in names}
-    return {name: read_script(file, file.parents[1]) for name, file in files.items() if file is not None}
+    found: dict[str, bytes] = {}
+    for name, part in resolve(plan).parts.items():
+        if part.derivation is None:
+            place = next((folder for folder in folders if script_file(folder, name, kernel.name).exists()), folders[0])
+            if (script := script_of(place, part, kernel.name)) is not None:
+                found[name] = script
+    return found

@@ -11,7 +11,7 @@ from typing import Final
 from articad_bench.faulty import Kind, Product, Site
 from articad_bench.plan_faults import APART, CLASH, HELD, PLACE, SIZE
 
-__all__ = ["SCRIPT_KINDS"]
+__all__ = ["SCRIPT_KINDS", "edited", "left_out", "makes_shape"]
 
 _UNUSED: Final = frozenset({"W_DIMENSION_UNUSED"})
 _BROKEN: Final = frozenset({"E_SCRIPT_ERROR", "E_NO_BUILD"})
@@ -66,7 +66,7 @@ class _Edited(ast.NodeTransformer):
         return self.generic_visit(node)
 
 
-def _edited(source: str, edit: Edit, *, everywhere: bool = False) -> Iterator[Callable[[], str]]:
+def edited(source: str, edit: Edit, *, everywhere: bool = False) -> Iterator[Callable[[], str]]:
     """Yield what makes the source with one edit, for each place where it can be made, or with all of them at once."""
     places = _Edited(edit, -1)
     places.visit(ast.parse(source))
@@ -98,7 +98,7 @@ def _literal(factor: float, product: Product) -> Iterator[Site]:
                 return copy.copy(number) if _is_dimension(node, [name]) else None
 
             if value and not name.endswith("_count"):
-                yield from _sites(product, part, f"{name} is {value * factor:.6g}", _edited(source, edit, everywhere=True))
+                yield from _sites(product, part, f"{name} is {value * factor:.6g}", edited(source, edit, everywhere=True))
 
 
 def _misspelt(product: Product) -> Iterator[Site]:
@@ -112,7 +112,7 @@ def _misspelt(product: Product) -> Iterator[Site]:
             assert isinstance(node.slice, ast.Constant)
             return ast.Subscript(node.value, ast.Constant(f"{node.slice.value!s}_mm"), ast.Load())
 
-        yield from _sites(product, part, "a dimension is misspelt", _edited(source, edit))
+        yield from _sites(product, part, "a dimension is misspelt", edited(source, edit))
 
 
 def _no_clearance(product: Product) -> Iterator[Site]:
@@ -123,25 +123,25 @@ def _no_clearance(product: Product) -> Iterator[Site]:
         def edit(node: ast.AST, names: Sequence[str] = names) -> ast.AST | None:
             return ast.Constant(0) if _is_dimension(node, names) else None
 
-        yield from _sites(product, part, f"without {', '.join(names)}", _edited(source, edit) if names else ())
+        yield from _sites(product, part, f"without {', '.join(names)}", edited(source, edit) if names else ())
 
 
 def _cut(node: ast.AST) -> ast.expr | None:
     """Return what a statement or expression subtracts, if it is a shape: it contains a call with a capital letter."""
     right = node.value if isinstance(node, ast.AugAssign) else node.right if isinstance(node, ast.BinOp) else None
     op = getattr(node, "op", None)
-    return right if isinstance(op, ast.Sub) and right is not None and _makes_shape(right) else None
+    return right if isinstance(op, ast.Sub) and right is not None and makes_shape(right) else None
 
 
 def _added(node: ast.AST) -> ast.expr | None:
     """Return what a statement adds, if it is a shape."""
-    if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add) and _makes_shape(node.value):
+    if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add) and makes_shape(node.value):
         return node.value
     return None
 
 
-def _makes_shape(node: ast.AST) -> bool:
-    """Whether an expression makes a shape; a call that only places something does not."""
+def makes_shape(node: ast.AST) -> bool:
+    """Return whether an expression makes a shape; a call that only places something does not."""
     calls = {one.func.id for one in ast.walk(node) if isinstance(one, ast.Call) and isinstance(one.func, ast.Name)}
     return bool({"Cylinder", "Box", "Sphere", "Cone", "Torus", "extrude", "revolve", "Circle", "Rectangle", "loft"} & calls)
 
@@ -153,7 +153,8 @@ def _with_right(node: ast.AST, right: ast.expr) -> ast.AST:
     return ast.BinOp(node.left, node.op, right)
 
 
-def _left_out(found: Callable[[ast.AST], ast.expr | None], node: ast.AST) -> ast.AST | None:
+def left_out(found: Callable[[ast.AST], ast.expr | None], node: ast.AST) -> ast.AST | None:
+    """Return what stands in place of a node without what is found in it; None if nothing is."""
     if found(node) is None:
         return None
     return ast.Pass() if isinstance(node, ast.AugAssign) else node.left if isinstance(node, ast.BinOp) else None
@@ -199,7 +200,7 @@ def _other_end(node: ast.AST) -> ast.AST | None:
 
 def _in_source(said: str, edit: Edit, product: Product) -> Iterator[Site]:
     for part, source in product.scripts.items():
-        yield from _sites(product, part, said, _edited(source, edit))
+        yield from _sites(product, part, said, edited(source, edit))
 
 
 # ---------------------------------------------------------------- in what is returned
@@ -236,11 +237,11 @@ SCRIPT_KINDS: Final = (
     _kind("dimension_ignored", "another number in place of a dimension", _SHAPE, _literal, 0.8),
     _kind("dimension_misspelt", "a dimension that does not exist", _BROKEN, _misspelt),
     _kind("clearance_forgotten", "built without a clearance", _SHAPE, _no_clearance),
-    _kind("bore_missing", "a cut left out", _SHAPE, _in_source, "a cut left out", partial(_left_out, _cut)),
+    _kind("bore_missing", "a cut left out", _SHAPE, _in_source, "a cut left out", partial(left_out, _cut)),
     _kind("bore_small", "a hole with 0.8 of its radius", _SHAPE, _in_source, "a hole × 0.8", partial(_round_scaled, 0, 0.8)),
     _kind("bore_shallow", "a hole with a quarter of its length", _SHAPE, _in_source, "a hole × 0.25 deep", partial(_round_scaled, 1, 0.25)),
     _kind("bore_off", "a cut 2 mm off in x, y and z", _SHAPE, _in_source, "a cut 2 mm off", partial(_shifted_cut, 2.0)),
-    _kind("feature_missing", "a body left out", _SHAPE, _in_source, "a body left out", partial(_left_out, _added)),
+    _kind("feature_missing", "a body left out", _SHAPE, _in_source, "a body left out", partial(left_out, _added)),
     _kind("extrusion_flipped", "an extrusion to the other side", _SHAPE, _in_source, "an extrusion to the other side", _other_end),
     _kind("plane_wrong", "the shape in another plane", _SHAPE, _returned, "turned by 90° about x", "shape = _b.Rot(X=90) * shape"),
     _kind("shape_mirrored", "the shape mirrored", _SHAPE, _returned, "mirrored at x = 0", "shape = _b.mirror(shape, about=_b.Plane.YZ)"),

@@ -6,7 +6,7 @@ They are made of the product that is given and of the reference at each stage.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final
@@ -21,15 +21,12 @@ from articad.kinematics import Coupling, Joint
 from articad.kinematics.joints import JointLimits, JointType
 from articad_bench.subject import Subject
 
-__all__ = ["LEFT_OPEN", "STAGED", "StagedCheat", "alike", "staged_cheats"]
+__all__ = ["STAGED", "StagedCheat", "alike", "staged_cheats"]
 
 STAGED: Final = ("given", "short", "stage", "partly", "crumbs")
 """Kinds of these cheats."""
 CRUMB_MM: Final = 1.5
 HAIR: Final = 1e-5  # share of its size by which a part is larger
-
-LEFT_OPEN: Final[Mapping[str, tuple[str, ...]]] = {"engine_inline_three": ("block",), "engine_radial": ("case",)}
-"""Parts by task that its reference changes in an edit, and that another product need not change: a case for the longer stroke holds the shorter one."""
 
 
 @dataclass(frozen=True)
