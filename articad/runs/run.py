@@ -13,6 +13,7 @@ import hashlib
 import io
 import itertools
 import json
+import math
 import os
 import re
 import secrets
@@ -575,7 +576,7 @@ class Run:
         if sum(self._weights.values()) > _JSON_VALUES:
             raise self._unreadable(name, f"{place} and the records that were read before have more than {_JSON_VALUES} values.")
         try:
-            value = json.loads(content, parse_constant=_no_number)
+            value = json.loads(content, parse_constant=_no_number, parse_float=_finite)
         except (ValueError, RecursionError) as error:
             raise self._unreadable(name, f"{place} is not JSON: {error}.") from error
         if not isinstance(value, dict):
@@ -838,6 +839,14 @@ def _json(value: Json) -> bytes:
 
 def _no_number(constant: str) -> None:
     raise ValueError(f"{constant} is not a JSON number")
+
+
+def _finite(digits: str) -> float:
+    """Return a number; one beyond the range of 64-bit numbers, such as 1e999, would be read as infinite and could not be written again."""
+    value = float(digits)
+    if math.isinf(value):
+        raise ValueError(f"{digits[:24]} is beyond the range of 64-bit numbers")
+    return value
 
 
 def _unreadable(name: str, message: str, hint: str) -> ReadError:
