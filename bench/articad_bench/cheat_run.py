@@ -62,6 +62,8 @@ _SOURCES: Final = (
     "script_faults.py",
     "trick_cheats.py",
     "room_checks.py",
+    "section_checks.py",
+    "around.py",
     "bodies.py",
 )
 COSTLY: Final = (

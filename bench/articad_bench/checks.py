@@ -24,6 +24,7 @@ from articad.interference.gauge import Gauge, placed
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
+from articad_bench.around import share_around
 from articad_bench.bodies import moved_bodies, moving
 from articad_bench.check import Bounds, Vector, in_words, within
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
@@ -36,6 +37,7 @@ from articad_bench.module_checks import Fitted, Ordered, Spaced, Turned
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.proofs import proven
 from articad_bench.room_checks import Room, Weighs
+from articad_bench.section_checks import Section
 from articad_bench.shape_checks import Holds, Holes, Passage, Stands, Studs, Symmetric, Volume, Wall
 from articad_bench.solids import wall_thickness
 from articad_bench.spacing_checks import Links, Square
@@ -398,7 +400,8 @@ class Gap(Check):
 
     With `bodies`, what is fixed to the parts counts as well: the cap of a bearing with its base. Where a shoulder or a washer lies closer,
     or a pin that is a part of its own carries the joint, the least play across the joint counts: an eye that rests on its bracket has the
-    gap of its pin.
+    gap of its pin. `around` is the share of a turn about the joint's axis in which the bodies keep this distance, at least: a bearing is
+    not open to its sides.
     """
 
     kind: Literal["gap"] = "gap"
@@ -407,17 +410,22 @@ class Gap(Check):
     within: float | None = None
     number: Bounds = (1, 999)
     bodies: bool = False
+    around: float | None = None
 
     @property
     def wanted(self) -> str:
         between = " between bodies" if self.bodies else ""
-        return f"{in_words(self.number)} joints ({self.joint}) with a gap of {in_words(self.mm)} mm{between}"
+        around = "" if self.around is None else f", over {100 * self.around:g} % of a turn about their axis"
+        return f"{in_words(self.number)} joints ({self.joint}) with a gap of {in_words(self.mm)} mm{between}{around}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        gaps = [self._gap(subject, joint) for joint in self.joint.found(subject) if _shaped(subject, joint)]
-        count = sum(within(gap, self.mm) for gap in gaps)
+        joints = [joint for joint in self.joint.found(subject) if _shaped(subject, joint)]
+        gaps = [self._gap(subject, joint) for joint in joints]
+        shares = [1.0 if self.around is None else share_around(subject, joint, self.mm) for joint in joints]
+        count = sum(within(gap, self.mm) and share >= (self.around or 0.0) for gap, share in zip(gaps, shares, strict=True))
         told = ", ".join(f"{gap:.3g}" for gap in gaps)
-        return self.number[0] <= count <= self.number[1], f"{count} ({told} mm)"
+        around = "" if self.around is None else f", over {', '.join(f'{100 * share:.0f}' for share in shares)} % of a turn"
+        return self.number[0] <= count <= self.number[1], f"{count} ({told} mm{around})"
 
     def _gap(self, subject: Subject, joint: Joint) -> float:
         near = Fit(within=self.within)
@@ -636,7 +644,8 @@ AnyCheck = Annotated[
     | Reaches
     | Fitted
     | Weighs
-    | Room,
+    | Room
+    | Section,
     Field(discriminator="kind"),
 ]
 

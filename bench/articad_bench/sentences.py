@@ -362,11 +362,20 @@ def _bounds(row: Any) -> list[Value]:
 
 def _round_values(row: Any) -> list[Value]:
     lengths = [] if row.length is None else [("mm", *row.length)]
-    return [*_lengths(row, (row.diameter, row.pitch, row.circle, *(row.apart[1] if row.apart else ()))), *lengths, *_heights(row)]
+    levels, beside = row.apart[1] if row.apart else (), row.beside[1] if row.beside else ()
+    return [*_lengths(row, (row.diameter, row.pitch, row.circle, *levels, *beside)), *lengths, *_heights(row)]
 
 
 def _heights(row: Any) -> list[Value]:
     return [] if row.above is None else [("mm", *row.above)]
+
+
+def _section_values(row: Any) -> list[Value]:
+    """Return how many pieces and openings a section has, their sides, and how far apart the pieces are."""
+    counts: list[Value] = [("count", *each) for each in (row.pieces, row.openings) if each is not None]
+    apart: list[Value] = [] if row.apart is None else [("mm", *row.apart)]
+    sides: list[Value] = [("mm", *row.bounds(side)) for side in (*(row.piece or ()), *(row.clear or ())) if side is not None]
+    return [*counts, *sides, *apart]
 
 
 def _ratio_values(row: Any) -> list[Value]:
@@ -411,6 +420,7 @@ _MEASURES: Final[dict[str, Callable[[Any], list[Value]]]] = {
     "travel": lambda row: [("deg" if row.joint.type in _TURNING else "mm", *row.by)],
     **dict.fromkeys(("holes", "studs"), _round_values),
     "passage": lambda row: _lengths(row, (row.diameter,)),
+    "section": _section_values,
     **dict.fromkeys(("ratio", "turns"), _ratio_values),
     "mass": lambda row: [("kg", *row.kg)],
     "holds": lambda row: [("ml", *row.ml)],

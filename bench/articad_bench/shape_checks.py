@@ -18,6 +18,8 @@ from articad_bench.wanted import JointWanted
 
 SAME_LEVEL_MM: Final = 0.2
 NEAR_WALL: Final = 0.9  # of the radius of a hole
+SAME_ROUND: Final = 0.005  # of a diameter: a pin and its bore are told apart
+PARALLEL: Final = 1e-6  # sine of the angle below which two axes have no crossing
 LEAN: Final = 0.996  # cosine of the 5° by which an axis may lean from the one asked for
 
 
@@ -37,6 +39,7 @@ class _Rounds(Check):
     circle: float | None = None
     apart: tuple[Vector, tuple[float, ...]] | None = None
     above: Bounds | None = None
+    beside: tuple[float, tuple[float, ...]] | None = None
     tolerance: float = 0.02
 
     @property
@@ -45,6 +48,9 @@ class _Rounds(Check):
         also += [f"{self.pitch:g} mm apart" if self.pitch else "", f"on a circle of {self.circle:g} mm" if self.circle else ""]
         also += [f"on levels {', '.join(f'{mm:g}' for mm in self.apart[1])} mm apart along {self.apart[0]}" if self.apart else ""]
         also += [f"{in_words(self.above)} mm above the ground" if self.above else ""]
+        also += [
+            f"{', '.join(f'{mm:g}' for mm in self.beside[1])} mm off the axis of a round of {self.beside[0]:g} mm" if self.beside else ""
+        ]
         return f"{in_words(self.number)} {self._name} of {self.diameter:g} mm within {100 * self.tolerance:g} %" + "".join(
             f", {a}" for a in also if a
         )
@@ -70,10 +76,21 @@ class _Rounds(Check):
             circles = [2 * _beside(found, middle) for found in meant]
             ok &= all(abs(mm - self.circle) <= self.tolerance * self.circle for mm in circles)
             told += f", on circles of {', '.join(f'{mm:.4g}' for mm in circles[:4])} mm"
-        for fits, words in self._levels(subject, meant):
+        for fits, words in (*self._levels(subject, meant), *self._beside_others(subject, meant)):
             ok &= fits
             told += words
         return ok, told
+
+    def _beside_others(self, subject: Subject, meant: list[Round]) -> Iterator[tuple[bool, str]]:
+        """Yield whether the axes lie as far off others as is asked for, with what is measured in words."""
+        if self.beside is None:
+            return
+        diameter, distances = self.beside
+        others = [found for mesh in placed(subject) for found in rounds(mesh) if abs(2 * found.radius - diameter) <= SAME_ROUND * diameter]
+        found = [min((_between(each, other) for other in others), default=np.inf) for each in meant]
+        lacking = [mm for mm in distances if not any(abs(each - mm) <= self.tolerance * mm for each in found)]
+        wrong = [each for each in found if not any(abs(each - mm) <= self.tolerance * mm for mm in distances)]
+        yield not lacking and not wrong, f", {', '.join(f'{mm:.4g}' for mm in found[:8])} mm off the axis of a round of {diameter:g} mm"
 
     def _levels(self, subject: Subject, meant: list[Round]) -> Iterator[tuple[bool, str]]:
         """Yield whether the axes lie on the levels that are asked for, and how high, with what is measured in words."""
@@ -300,6 +317,13 @@ def _goes_through(meshes: list[TriMesh], hole: Round, reach: float) -> bool:
 def _beside(found: Round, point: FloatArray) -> float:
     """Return the distance of a point from an axis [mm]."""
     return float(np.linalg.norm(np.cross(point - found.centre, found.axis)))
+
+
+def _between(found: Round, other: Round) -> float:
+    """Return the distance of two axes, which may be skew [mm]."""
+    normal = np.cross(found.axis, other.axis)
+    sine = float(np.linalg.norm(normal))
+    return _beside(found, other.centre) if sine < PARALLEL else abs(float((other.centre - found.centre) @ normal)) / sine
 
 
 def _nearest(found: Round, others: list[Round]) -> float:

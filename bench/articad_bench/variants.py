@@ -49,6 +49,7 @@ COSTLY: Final = {
     "holes": 60,
     "studs": 60,
     "square": 20,
+    "section": 60,
     "wall": 20,
     "gap": 20,
     "clear_in_motion": 0,
@@ -290,7 +291,10 @@ _LENGTHS: Final = (
     "into",
     "opens",
     "opening",
+    "at",
 )
+_ROWS: Final = ("apart", "beside", "piece", "clear")
+"""Fields that are a row of lengths, or name what is measured and then the row."""
 _SPANS: Final = ("joint", "driver", "follower")
 
 
@@ -351,6 +355,13 @@ def _slots(row: dict[str, Any]) -> Iterator[tuple[Callable[[], float], Callable[
                 yield _bounds(row, name)
         elif isinstance(value, list):
             yield from (_slot(value, index) for index, each in enumerate(value) if each is not None)
+    for name in _ROWS:
+        value = row.get(name)
+        if name == "apart" and value and not isinstance(value[1], list):
+            yield _bounds(row, name)
+            continue
+        lengths = value[1] if value and isinstance(value[1], list) else value or []
+        yield from (_slot(lengths, index) for index, each in enumerate(lengths) if isinstance(each, int | float))
     for name in _SPANS:
         if isinstance(row.get(name), dict) and isinstance(row[name].get("span"), list) and _narrow(row[name]["span"]):
             yield _bounds(row[name], "span")

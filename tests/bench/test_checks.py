@@ -68,6 +68,8 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("four_bar", {"kind": "shifted", "axis": [1, 0, 0], "mm": [-0.1, 0.1], "number": [1, 99]}),
     ("toggle_clamp", {"kind": "holes", "diameter": 6.6, "number": [4, 4], "axis": [0, 0, 1], "through": True, "length": [6.9, 7.1]}),
     ("funnel_kitchen", {"kind": "passage", "diameter": 13, "axis": [0, 0, 1]}),
+    ("heat_sink_nine_fins", {"kind": "section", "axis": "z", "at": 20, "pieces": [9, 9], "apart": [7, 7.2], "piece": [1.5, 100]}),
+    ("pulley_v_80", {"kind": "section", "axis": "z", "at": 10, "pieces": [1, 1], "openings": [1, 1], "clear": [16, [18, 19]]}),
     ("toggle_clamp", {"kind": "studs", "diameter": 12, "number": [1, 1]}),
     ("desk_lamp", {"kind": "wall", "mm": [1.8, 2.2], "number": [1, 1]}),
     ("wardrobe", {"kind": "volume", "cm3": [50000, 150000]}),
@@ -426,3 +428,76 @@ def test_a_passage_that_is_walled_up_is_none(wall: bool, flap: bool, still: bool
     subject = Subject(Assembly.from_parts("valve", parts=[pipe, door], joints=[turn if flap else aside], ground="pipe"))
 
     assert form({"kind": "passage", "diameter": 30, "axis": [0, 0, 1], "still": still}).judge(subject).ok is ok
+
+
+def alone(solid: m3.Manifold) -> Subject:
+    part = Part.from_mesh("body", manifold_mesh(solid), density=1000)
+    return Subject(Assembly.from_parts("one", parts=[part], joints=[], ground="body"))
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+@pytest.mark.parametrize("turned", [0, 45])
+@pytest.mark.parametrize(
+    ("slots", "width", "deep", "fits"), [(2, 5, 8, True), (0, 5, 8, False), (1, 5, 8, False), (2, 4, 8, False), (2, 5, 5, False)]
+)
+def test_a_section_tells_how_many_slots_a_rim_has_and_how_wide_and_deep_they_are(
+    slots: int, width: float, deep: float, fits: bool, turned: int, axis: str
+) -> None:
+    """The battlements of a rook, whichever way its slots and its axis point."""
+    rim = m3.Manifold.cylinder(16, 15, 15, 96) - m3.Manifold.cylinder(8, 10, 10, 96).translate([0, 0, 8.0])
+    for number in range(slots):
+        rim -= m3.Manifold.cube([40, width, 20], center=True).rotate([0, 0, 90 * number + turned]).translate([0, 0, 26 - deep])
+    subject = alone(rim.rotate({"x": [0, 90, 0], "y": [-90, 0, 0], "z": [0, 0, 0]}[axis]))
+    cuts = ({"at": 9, "pieces": [4, 4], "apart": [4.8, 5.2]}, {"at": 7, "pieces": [1, 1], "piece": [30, 30]})
+
+    judged = [form({"kind": "section", "axis": axis} | cut).judge(subject) for cut in cuts]
+
+    assert all(row.ok for row in judged) is fits, judged
+
+
+def test_parts_that_touch_are_one_piece_and_what_a_joint_moves_is_cut_alone() -> None:
+    """A drawer of two boards, glued, in a cabinet that is open in front; an opening with a tongue in it is as wide as its box."""
+    walls = m3.Manifold.cube([60, 60, 60]) - m3.Manifold.cube([50, 60, 50]).translate([5, -5, 5])
+    solids = {"cabinet": walls, "board": m3.Manifold.cube([40, 20, 8]), "front": m3.Manifold.cube([40, 8, 20])}
+    parts = [Part.from_mesh(name, manifold_mesh(solid), density=1000) for name, solid in solids.items()]
+    slide = joint("slide", "slider", ("cabinet", at(10, 10, 20)), ("board", at(0)), limits=[(-30.0, 0.0)])
+    glued = joint("glued", "fixed", ("board", at(0)), ("front", at(0, 8, 0)))
+    subject = Subject(Assembly.from_parts("cabinet", parts=parts, joints=[slide, glued], ground="cabinet"))
+
+    def ok(**row: Any) -> bool:
+        return form({"kind": "section"} | row).judge(subject).ok
+
+    assert ok(axis="y", at=15, pieces=[2, 2], openings=[1, 1], clear=[50, 50], apart=[4.9, 15.1])
+    assert ok(axis="x", at=20, joint={"type": "slider"}, pieces=[1, 1], piece=[[27, 29], 20])
+    assert not ok(axis="x", at=20, joint={"type": "revolute"}, pieces=[0, 9])
+    assert not ok(axis="y", at=15, apart=[0, 4])
+
+
+@pytest.mark.parametrize(("places", "fits"), [((90,), True), ((-90,), True), ((60,), False), ((90, -60), False), ((), False)])
+def test_holes_lie_as_far_off_the_axis_of_another_round_as_the_text_says(places: tuple[float, ...], fits: bool) -> None:
+    """A cheek with a spindle hole."""
+    cheek = m3.Manifold.cylinder(12, 130, 130, 96) - m3.Manifold.cylinder(99, 15, 15, 64, center=True)
+    for x in places:
+        cheek -= m3.Manifold.cylinder(99, 6, 6, 64, center=True).translate([x, 0, 0])
+    check = {"kind": "holes", "diameter": 12, "number": [1, 2], "beside": [30, [90]]}
+
+    assert form(check).judge(alone(cheek)).ok is fits
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(("opened", "bore", "fits"), [(0.0, 15.1, True), (2.0, 15.1, True), (16.0, 15.1, False), (0.0, 15.3, False)])
+def test_a_bearing_that_is_open_to_its_sides_does_not_hold_its_shaft_all_round(
+    opened: float, bore: float, fits: bool, turned: bool
+) -> None:
+    """A block and its cap; the slit between them is narrow, or so high that the shaft lies bare on both sides. The shaft is hollow."""
+    block = m3.Manifold.cube([90, 90, 50], center=True) - m3.Manifold.cylinder(99, bore, bore, 96, center=True)
+    block -= m3.Manifold.cube([99, opened, 99], center=True)
+    shaft = m3.Manifold.cylinder(120, 15, 15, 96, center=True) - m3.Manifold.cylinder(99, 9, 9, 32, center=True)
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in (("block", block), ("shaft", shaft))]
+    ends = [("block", at(0)), ("shaft", at(0))]
+    turn = joint("turn", "revolute", *(ends[::-1] if turned else ends))
+    subject = Subject(Assembly.from_parts("bearing", parts=parts, joints=[turn], ground="block"))
+
+    judged = form({"kind": "gap", "joint": {"type": "revolute"}, "mm": [0.08, 0.12], "around": 0.85}).judge(subject)
+
+    assert judged.ok is fits, judged

@@ -20,6 +20,7 @@ from articad.geometry import MassProperties, Part, TriMesh, box, merged
 from articad.geometry.part import Solid
 from articad.kinematics.joints import Coordinate, Joint, JointLimits, JointType
 from articad_bench.checks import Check, Joints, Ratio
+from articad_bench.section_checks import Section
 from articad_bench.subject import Subject
 
 
@@ -306,13 +307,13 @@ def _thin(check: Check, subject: Subject) -> Subject:
 
 
 def _crumbs(_check: Check, subject: Subject) -> Subject:
-    """All that moves is a tenth as large."""
+    """All that moves is a hundredth as large."""
     parts = []
     for name, part in subject.assembly.parts.items():
         mesh = part.mesh
         if mesh is not None and subject.rigid[name] != subject.rigid[subject.assembly.ground]:
             middle = SE3.from_translation(mesh.bounds.mean(axis=0))
-            mesh = mesh.transformed(middle.inverse()).scaled(0.1).transformed(middle)
+            mesh = mesh.transformed(middle.inverse()).scaled(0.01).transformed(middle)
         parts.append(part if mesh is part.mesh else shaped_as(part, mesh))
     return Subject(changed(subject.assembly, parts))
 
@@ -325,6 +326,29 @@ def _corners(_check: Check, subject: Subject) -> Subject:
         if mesh is not None:
             mesh = merged([box(0.1, 0.1, 0.1).transformed(SE3.from_translation(corner)) for corner in mesh.bounds])
         parts.append(part if mesh is None else shaped_as(part, mesh))
+    return Subject(changed(subject.assembly, parts))
+
+
+def _cut_otherwise(check: Check, subject: Subject) -> Subject:
+    """Each part is the block of the whole: of another size where sizes are asked for, else hollow where nothing may be open, in two where one piece may be."""
+    assert isinstance(check, Section)
+    if check.piece or check.clear or check.apart:
+        return _larger(check, subject)
+    ends = subject.corners(subject.rest)
+    middle, sides = ends.mean(axis=0), np.ptp(ends, axis=0)
+
+    def block(x: float, share: float) -> TriMesh:
+        return box(share * sides[0], share * sides[1], share * sides[2]).transformed(SE3.from_translation(middle + np.array([x, 0, 0])))
+
+    if check.openings == (0, 0):
+        blocks = [block(0, 1.0), block(0, 0.9).flipped()]
+    else:
+        blocks = [block(0, 1.0)] if check.pieces != (1, 1) else [block(0, 0.9), block(2 * sides[0], 0.9)]
+    whole = merged(blocks)
+    parts = [
+        part if part.mesh is None else shaped_as(part, whole.transformed(subject.rest[part.name].inverse()))
+        for part in subject.assembly.parts.values()
+    ]
     return Subject(changed(subject.assembly, parts))
 
 
@@ -486,6 +510,7 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "shifted": _all_new,
     "holes": _larger,
     "passage": _larger,
+    "section": _cut_otherwise,
     "studs": _larger,
     "wall": _of_another_wall,
     "volume": _larger,
