@@ -10,10 +10,12 @@ import ast
 import re
 import sys
 import textwrap
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 from typing import get_args
 
+from bench_checks import page as checks
 from orders import stored_page as orders
 from realised import stored_page as realised
 
@@ -256,6 +258,7 @@ PAGES = {
     "losses.md": losses,
     "formats.md": all_formats,
     "cli.md": commands,
+    "checks.md": partial(checks, NOTE),
     "freecad-kernel.md": freecad_kernel,
     "orders.md": orders,
     "realised.md": realised,
