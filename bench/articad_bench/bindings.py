@@ -29,6 +29,7 @@ from articad_bench.likeness_checks import (
     turned_over,
 )
 from articad_bench.machined_checks import Machined, Toleranced, fits_stated, machined
+from articad_bench.outline_checks import Outlined, outlined
 from articad_bench.subject import Subject
 from articad_bench.task import Task
 from articad_bench.whole_checks import Threads
@@ -53,7 +54,7 @@ FACING: Final = re.compile(r"(?<!\w)[+-][xy]\b|\bx to the right\b|\bleft to righ
 """Words of a prompt that say which end of x or y something lies at."""
 TURNED_OVER: Final = (0.06, 0.15)
 """By how much the moments of a product that is turned over differ, at least, where a picture shows it, and where a text alone says it."""
-BOUND: Final = (Moves, Made, Arranged, Handed, Upright, Matter, Threads, Machined, Toleranced)
+BOUND: Final = (Moves, Made, Arranged, Outlined, Handed, Upright, Matter, Threads, Machined, Toleranced)
 
 
 def bindings(task: Task, subject: Subject) -> tuple[AnyCheck, ...]:
@@ -105,6 +106,8 @@ def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
         checks.append(Arranged(parts=_rows(rows), loosely=_form(task) == "photos", place=place))
     elif task.images and _bodies_are_stated(task, subject):
         checks.append(Arranged(parts=_rows(arrangement(subject, bodies=True)), bodies=True, loosely=_form(task) == "photos"))
+    if _form(task) == "photos":
+        checks.append(outlined(subject))
     hand = handedness(subject) if shows_hands(task) else 0.0
     if hand > DETAIL:
         matter = tuple(round(value, 5 if hand <= HAND else 4) for value in moments_of(subject).tolist())

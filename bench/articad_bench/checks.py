@@ -34,6 +34,7 @@ from articad_bench.function_checks import Effort, Folds, Passes, PutTogether
 from articad_bench.likeness_checks import Arranged, Handed, Matter, Upright
 from articad_bench.machined_checks import Machined, Toleranced
 from articad_bench.module_checks import Fitted, Ordered, Spaced, Turned
+from articad_bench.outline_checks import Outlined
 from articad_bench.path_checks import PATH, Level, Straight, Turns
 from articad_bench.proofs import proven
 from articad_bench.room_checks import Room, Weighs
@@ -623,6 +624,7 @@ AnyCheck = Annotated[
     | Made
     | Moves
     | Arranged
+    | Outlined
     | Handed
     | Upright
     | Matter

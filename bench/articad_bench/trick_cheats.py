@@ -1,4 +1,4 @@
-"""Cheats that meet the numbers of a text and miss its words: foam for oak, a block for a drawer, a way back for a way out, a notch, a pin half out.
+"""Cheats that meet the numbers of a text and miss its words: foam for oak, a block for a drawer, a way back for a way out, a notch, a pin half out, a bar.
 
 Each is tried where a check of the task says that it is meant: whoever adds such a check to a task has the cheat tried on it.
 """
@@ -20,6 +20,7 @@ from articad.kinematics.joints import Joint
 from articad_bench.bodies import moved_bodies
 from articad_bench.checks import Reaches
 from articad_bench.machined_checks import Machined
+from articad_bench.outline_checks import Outlined
 from articad_bench.room_checks import Weighs
 from articad_bench.shape_checks import Holds
 from articad_bench.subject import Subject
@@ -30,6 +31,8 @@ __all__ = ["TRICKS"]
 FOAM: Final = 1.0  # kg/m³
 NOTCH: Final = 0.01  # of a part's volume that is cut off it, at least
 SLIP: Final = 0.05  # of the product's diagonal
+BAR: Final = (0.3, 0.06, 0.06)  # sides, as shares of the product's diagonal
+OUT: Final = 0.03  # of the diagonal, by which a bar stands out
 GROWN: Final = 1.15  # times as large as before is each notch that is tried
 TRIED: Final = 40
 
@@ -111,12 +114,28 @@ def _slipped(task: Task, reference: Assembly) -> Assembly | None:
     return _with(reference, {name: _made(reference, name, mesh.transformed(SE3.from_translation(way)))})
 
 
+def _barred(task: Task, reference: Assembly) -> Assembly | None:
+    """Return the reference with a bar on the back of its largest part, if photos show outlines without one."""
+    if not _of(task, Outlined):
+        return None
+    subject = Subject(reference)
+    name = max(_shaped(reference), key=lambda each: abs(_mesh(reference, each).volume))
+    corners, diagonal = subject.rest[name].apply(_mesh(reference, name).vertices), float(np.linalg.norm(subject.size))
+    middle, (low, high) = corners[np.lexsort(np.round(corners.T[[0, 2, 1]], 3))[-1]], subject.corners(subject.rest)
+    ends = [middle + side * diagonal / 2 * np.array(BAR) for side in (-1, 1)]
+    low, high = np.clip(ends, low, high + np.array([0, OUT * diagonal, 0]))  # the whole stays as wide and high as it is
+    bar = box(*(high - low).tolist()).transformed(subject.rest[name].inverse() @ SE3.from_translation((low + high) / 2))
+    part = _part(reference, name, _solid(_mesh(reference, name)) + _solid(bar))
+    return None if part is None else _with(reference, {name: part})
+
+
 TRICKS: Final[Mapping[str, Callable[[Task, Assembly], Assembly | None]]] = {
     "weightless": _weightless,
     "brimful": _brimful,
     "backward": _backward,
     "notched": _notched,
     "slipped": _slipped,
+    "barred": _barred,
 }
 """Makers of these cheats."""
 

@@ -431,6 +431,17 @@ def test_what_sheets_do_not_show_is_refused(kind: str) -> None:
     assert refused_by(asked, Subject(product)) is None
 
 
+def test_what_photos_do_not_show_is_refused() -> None:
+    product = hinge()
+    asked = bound(Task.model_validate(HINGED | {"prompt": "", "images": ["photo_1.jpg"], "drawing": {"form": "photos"}}), Subject(product))
+
+    (cheat,) = cheats_of(asked, product, ("barred",))
+
+    assert "outlined" in {judged.kind for judged in asked.judge(Subject(cheat.assembly)) if not judged.ok}
+    assert refused_by(asked, Subject(product)) is None
+    assert refused_by(asked, Subject(product).turned(1)) is None
+
+
 def test_a_comb_is_no_stack_and_a_stack_on_one_side_is_none_on_both() -> None:
     """Three blocks of 10 mm between two jaws, in one piece and in five; beside them, as asked for, once more."""
 

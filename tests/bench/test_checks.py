@@ -82,6 +82,7 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("wiper_tandem", {"kind": "level", "mm": [56, 68], "number": [1, 999]}),
     ("planetary_hoist", {"kind": "turns", "ratio": 4.5, "number": [1, 3]}),
     *(("hinge_pintle_gate", bound("hinge_pintle_gate", kind)) for kind in ("matter", "arranged", "handed", "upright")),
+    ("photo_cabinet_card", bound("photo_cabinet_card", "outlined")),
     ("desk_lamp", {"kind": "extent", "side": "z", "mm": [300, 420]}),
     ("toggle_clamp", {"kind": "threads"}),
     ("plate_motor_mount", {"kind": "square", "mm": 31}),

@@ -504,6 +504,7 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "weighs": _larger,
     "room": _crowded,
     "arranged": _one_aside,
+    "outlined": _one_aside,
     "handed": _mirror_image,
     "upright": _upside_down,
     "unchanged": _all_new,
