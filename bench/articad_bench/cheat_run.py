@@ -41,6 +41,7 @@ _SOURCES: Final = (
     "checks.py",
     "shape_checks.py",
     "path_checks.py",
+    "gear_checks.py",
     "bindings.py",
     "likeness_checks.py",
     "outline_checks.py",

@@ -31,11 +31,12 @@ from articad_bench.check import Check as Check  # noqa: PLC0414  (others take th
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
 from articad_bench.edit_checks import Shifted
 from articad_bench.function_checks import Effort, Folds, Passes, PutTogether
+from articad_bench.gear_checks import Meshes
 from articad_bench.likeness_checks import Arranged, Handed, Matter, Upright
 from articad_bench.machined_checks import Machined, Toleranced
 from articad_bench.module_checks import Fitted, Ordered, Spaced, Turned
 from articad_bench.outline_checks import Outlined
-from articad_bench.path_checks import PATH, Level, Straight, Turns
+from articad_bench.path_checks import PATH, Floor, Level, Straight, Turns
 from articad_bench.proofs import proven
 from articad_bench.room_checks import Room, Weighs
 from articad_bench.section_checks import Section
@@ -127,7 +128,7 @@ class PartSize(Check):
 
     Attributes:
         above: How high the lowest point of such a part lies above that of the whole, at rest [mm].
-        fill: Least share of its box that such a part fills: a board has no window.
+        fill: Least share of its box that such a part fills: a board has no window; or least and greatest share: a channel is not solid.
     """
 
     kind: Literal["part_size"] = "part_size"
@@ -135,13 +136,14 @@ class PartSize(Check):
     number: Bounds = (1, 999)
     tolerance: float = 0.02
     above: Bounds | None = None
-    fill: float | None = None
+    fill: float | Bounds | None = None
 
     @property
     def wanted(self) -> str:
         sides = " x ".join("any" if side is None else f"{side:g}" for side in self.mm)
         above = "" if self.above is None else f", {in_words(self.above)} mm above the ground"
-        fill = "" if self.fill is None else f", filling {100 * self.fill:g} % of their boxes or more"
+        low, high = self._filling
+        fill = "" if self.fill is None else f", filling {100 * low:g} %{f' to {100 * high:g} %' if high < 1 else ' or more'} of their boxes"
         return f"{in_words(self.number)} parts of {sides} mm within {100 * self.tolerance:g} %{above}{fill}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
@@ -156,7 +158,11 @@ class PartSize(Check):
     def _fills(self, subject: Subject, name: str) -> bool:
         mesh = subject.assembly.parts[name].mesh
         assert mesh is not None
-        return self.fill is None or abs(mesh.volume) >= self.fill * float(np.prod(subject.boxes(name), axis=1).min())
+        return self.fill is None or within(abs(mesh.volume) / float(np.prod(subject.boxes(name), axis=1).min()), self._filling)
+
+    @property
+    def _filling(self) -> Bounds:
+        return self.fill if isinstance(self.fill, tuple) else (self.fill or 0.0, 1.0)
 
 
 class Mass(Check):
@@ -606,7 +612,9 @@ AnyCheck = Annotated[
     | Travel
     | Straight
     | Level
+    | Floor
     | Turns
+    | Meshes
     | Gap
     | Captive
     | Simulates

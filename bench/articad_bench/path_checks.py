@@ -17,6 +17,7 @@ from articad_bench.subject import Subject
 PATH: Final = 121  # values of a driver at which a path is measured
 SPEEDS: Final = 7  # values of a driver at which speeds are compared
 STILL: Final = 1e-6  # rad per rad or mm of the driver: slower does not turn
+SUNK_MM: Final = 0.5  # by which what rolls or lies on the floor may come below it
 LEVEL_RAD: Final = math.radians(0.1)  # by which what does not turn may turn
 
 
@@ -56,6 +57,25 @@ class Level(Check):
         found = {name: distance for name, distance in moved.items() if within(distance, self.mm)}
         told = ", ".join(f"{name} {distance:.4g}" for name, distance in moved.items() if distance > 1e-6)
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({told or 'none moves without turning'})"
+
+
+class Floor(Check):
+    """While the drivers move one by one, nothing comes lower than what the product stands on at rest."""
+
+    kind: Literal["floor"] = "floor"
+
+    @property
+    def wanted(self) -> str:
+        return "nothing goes through the floor while it moves"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        ground, lowest = float(subject.corners(subject.rest)[0, 2]), 0.0
+        for poses in _strokes(subject):
+            for column, name in enumerate(subject.assembly.mechanism.parts):
+                if name in subject.shaped:
+                    heights = np.tensordot(poses[:, column].rotation[:, 2], subject.hull(name), axes=(1, 1)).min(axis=1)
+                    lowest = min(lowest, float((heights + poses[:, column].translation[:, 2]).min()) - ground)
+        return lowest >= -SUNK_MM, f"{-lowest:.3g} mm below it"
 
 
 class Turns(Check):

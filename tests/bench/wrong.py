@@ -422,6 +422,38 @@ def _other_lead(_check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, joints=[replace(joint, lead=-2 * joint.lead) for joint in subject.assembly.joints]))
 
 
+def _tipping(_check: Check, subject: Subject) -> Subject:
+    """All is fixed but for a long rod that lies level and tips."""
+    low, high = subject.corners(subject.rest)
+    frame = SE3.from_translation((low + high) / 2) @ SE3.rot_y(np.pi / 2)
+    ground, name = subject.assembly.ground, next(name for name in reversed(subject.shaped) if name != subject.assembly.ground)
+    mesh = subject.assembly.parts[name].mesh
+    assert mesh is not None
+    rod = box(1, 10 * float((high - low).max()), 1).transformed(subject.rest[name].inverse() @ SE3.from_translation((low + high) / 2))
+    parts = [
+        shaped_as(part, merged([mesh, rod])) if part.name == name else part
+        for part in subject.assembly.parts.values()
+        if part.name in {*subject.shaped, ground}
+    ]
+    joints = [
+        Joint(
+            name=f"to_{part.name}",
+            type=JointType.REVOLUTE if part.name == name else JointType.FIXED,
+            parent=ground,
+            child=part.name,
+            parent_connector=f"for_{part.name}",
+            child_connector="held",
+            T_parent_connector=subject.rest[ground].inverse() @ frame,
+            T_child_connector=subject.rest[part.name].inverse() @ frame,
+            limits=JointLimits((-1.0,), (1.0,)) if part.name == name else JointLimits(),
+            rest=(0.0,) if part.name == name else (),
+        )
+        for part in parts
+        if part.name != ground
+    ]
+    return Subject(changed(subject.assembly, parts, joints, couplings=(), fits={}))
+
+
 def _locked(_check: Check, subject: Subject) -> Subject:
     """A shell around the product that nothing gets into."""
     low, high = subject.corners(subject.rest)
@@ -484,7 +516,9 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "travel": _short,
     "straight": _mispinned,
     "level": _leaning,
+    "floor": _tipping,
     "turns": _unclosed,
+    "meshes": _crumbs,
     "gap": _thin,
     "captive": _nothing_around,
     "made": _nothing_around,
