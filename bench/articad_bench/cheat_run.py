@@ -113,6 +113,7 @@ the suite and how to submit a cheat of your own.
 | short | of a task that begins with a product: joints go half as far from rest |
 | stage | what is given, or the product of another stage, as the answer of a stage of a task with edits |
 | partly | one of several changes of a stage not made: of a part's shape, of a joint, of the couplings |
+| side | one of several sides of a part that an edit changes is as long as before |
 | crumbs | after an edit, every part is new by a hair, and as many crumbs on the ground stay as parts were to |
 | featureless | the reference without one of the cuts or bodies that its scripts make, where the task does not leave it open |
 """

@@ -16,17 +16,18 @@ import numpy as np
 from articad.assembly import Assembly
 from articad.certificates.certificate import constrained_joints
 from articad.connectors import SE3
-from articad.geometry import Part, box
+from articad.geometry import Part, TriMesh, box
 from articad.kinematics import Coupling, Joint
 from articad.kinematics.joints import JointLimits, JointType
 from articad_bench.subject import Subject
 
 __all__ = ["STAGED", "StagedCheat", "alike", "staged_cheats"]
 
-STAGED: Final = ("given", "short", "stage", "partly", "crumbs")
+STAGED: Final = ("given", "short", "stage", "partly", "side", "crumbs")
 """Kinds of these cheats."""
 CRUMB_MM: Final = 1.5
 HAIR: Final = 1e-5  # share of its size by which a part is larger
+OTHER_SIDE: Final = 0.03  # of a side of a part, by which it must have changed
 
 
 @dataclass(frozen=True)
@@ -72,6 +73,9 @@ def staged_cheats(begun: Assembly | None, stages: Sequence[Assembly], left_open:
             if what in left_open:
                 continue
             yield put("partly", f"{_named(stage)} with {what} as before", make=make)
+        for name, what, make in _sides(before, right):
+            if name not in left_open:
+                yield put("side", f"{_named(stage)} with {what} as before", make=make)
         if begun is None and before is not None:
             kept = _kept(before, right)
             yield replace(put("crumbs", "", make=partial(_all_new, right, kept)), before=_with_crumbs(before, kept))
@@ -158,6 +162,33 @@ def _partly(before: Assembly | None, after: Assembly) -> list[tuple[str, Callabl
     return list(found.values()) if len(found) > 1 else []
 
 
+def _sides(before: Assembly | None, after: Assembly) -> Iterator[tuple[str, str, Callable[[], Assembly]]]:
+    """Yield the name of each part of which several sides have changed, and what makes products in which one of these is as long as it was.
+
+    Of parts that have changed in the same way, one is stretched.
+    """
+    known = set()
+    for name, part in after.parts.items():
+        old = None if before is None else before.parts.get(name)
+        if old is None or old.mesh is None or part.mesh is None or (key := (old.mesh.digest, part.mesh.digest)) in known:
+            continue
+        known.add(key)
+        factors = np.ptp(old.mesh.bounds, axis=0) / np.ptp(part.mesh.bounds, axis=0)
+        changed = [axis for axis in range(3) if abs(factors[axis] - 1) > OTHER_SIDE]
+        for axis in changed if len(changed) > 1 else ():
+            yield name, f"{name} along {'xyz'[axis]}", partial(_stretched, after, name, axis, float(factors[axis]))
+
+
+def _stretched(after: Assembly, name: str, axis: int, factor: float) -> Assembly:
+    """Return a product with a part that is stretched about the middle of its box along an axis of its own frame."""
+    part = after.parts[name]
+    if part.mesh is None:
+        return after
+    middle = part.mesh.bounds.mean(axis=0)
+    vertices = middle + (part.mesh.vertices - middle) * np.where(np.arange(3) == axis, factor, 1.0)
+    return replace(after, parts={**after.parts, name: _of_the_same(part, TriMesh(vertices, part.mesh.triangles))})
+
+
 def _with_part(after: Assembly, before: Assembly, name: str) -> Assembly:
     return replace(after, parts={**after.parts, name: before.parts[name]})
 
@@ -190,8 +221,13 @@ def _all_new(after: Assembly, crumbs: int) -> Assembly:
 def _larger(part: Part) -> Part:
     if part.mesh is None:
         return part
-    density = 1e9 * part.mass.mass / abs(part.mesh.volume) if part.mass is not None else None
-    return Part.from_mesh(part.name, part.mesh.scaled(1 + HAIR), density=density)
+    return _of_the_same(part, part.mesh.scaled(1 + HAIR))
+
+
+def _of_the_same(part: Part, mesh: TriMesh) -> Part:
+    """Return a part of another shape, of the same stuff."""
+    density = 1e9 * part.mass.mass / abs(part.mesh.volume) if part.mass is not None and part.mesh is not None else None
+    return Part.from_mesh(part.name, mesh, density=density)
 
 
 def _with_crumbs(assembly: Assembly, number: int) -> Assembly:

@@ -8,6 +8,7 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import articad_bench
@@ -68,6 +69,20 @@ def test_each_change_is_left_out_once_and_of_parts_that_change_alike_one() -> No
     held = found["0: the first product with joint left as before"]
     assert [each.limits.upper for each in held.joints] == [(1.5,), (1.2,)]
     assert made(begun, product(plate=90), kind="partly") == {}  # without its only change it is what was given
+
+
+def test_each_side_that_has_changed_with_another_stays_as_long_as_it_was_once() -> None:
+    begun, right = product(), product(plate=90, levers=70)
+    larger = replace(right, parts={**right.parts, "plate": Part.from_mesh("plate", box(90, 50, 6), density=1000)})
+
+    found = made(begun, larger, kind="side")
+
+    sides = {name: each.parts["plate"].mesh for name, each in found.items()}
+    assert {name: mesh and np.ptp(mesh.bounds, axis=0).round(6).tolist() for name, mesh in sides.items()} == {
+        "0: the first product with plate along x as before": [80, 50, 6],
+        "0: the first product with plate along y as before": [90, 40, 6],
+    }
+    assert made(begun, right, kind="side") == {}  # of each part one side has changed
 
 
 def test_joints_that_go_half_as_far_start_where_they_did() -> None:
