@@ -57,7 +57,7 @@ def staged_cheats(begun: Assembly | None, stages: Sequence[Assembly], left_open:
     Args:
         begun: The product that a task begins with, if it does.
         stages: The reference at first, and after each edit.
-        left_open: Names of parts that need not change.
+        left_open: Names of parts, or of their sides, that need not change.
     """
     products = [begun, *stages]
     for stage, right in enumerate(stages):
@@ -74,7 +74,7 @@ def staged_cheats(begun: Assembly | None, stages: Sequence[Assembly], left_open:
                 continue
             yield put("partly", f"{_named(stage)} with {what} as before", make=make)
         for name, what, make in _sides(before, right):
-            if name not in left_open:
+            if not {name, what} & {*left_open}:
                 yield put("side", f"{_named(stage)} with {what} as before", make=make)
         if begun is None and before is not None:
             kept = _kept(before, right)
