@@ -17,6 +17,7 @@ LONGEST: Final = 400  # characters of an example
 TITLES: Final = {
     "checks": "Parts, joints and motion",
     "path_checks": "Paths",
+    "gear_checks": "Gears",
     "edit_checks": "Edits",
     "shape_checks": "Shapes",
     "likeness_checks": "Likeness to a picture",

@@ -146,8 +146,8 @@ class Task(PlanObject):
         budget: What a run may use; unlimited by default.
         reference: Folder beside `task.json` with a plan and part scripts that pass; or "example:NAME".
         unheld: Stretches of the texts with numbers that no check holds, each with the reason; see `articad_bench.sentences`.
-        left_open: What the reference has and another product need not have, each with the reason: a part that an edit changes, or a
-            feature, such as "screw: cut 1". No cheat is made of these; see `articad_bench.feature_cheats`.
+        left_open: What the reference has and another product need not have, each with the reason: a part that an edit changes, or
+            a side of it, such as "stand along x", or a feature, such as "screw: cut 1". No cheat is made of these; see `articad_bench.feature_cheats`.
     """
 
     form: Literal["articad.task/1"] = Field(default="articad.task/1", alias="schema")
