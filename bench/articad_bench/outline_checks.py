@@ -85,7 +85,7 @@ def _outline(corners: FloatArray, side: tuple[int, int], shape: tuple[int, ...])
     pen = ImageDraw.Draw(picture)
     for triangle in dots:
         pen.polygon(triangle.ravel().tolist(), fill=1, outline=1)
-    return np.asarray(picture)[::-1].reshape(rows, FINE, columns, FINE).any(axis=(1, 3))
+    return np.asarray(np.asarray(picture)[::-1].reshape(rows, FINE, columns, FINE).any(axis=(1, 3)))
 
 
 def _difference(wanted: Outline, found: Outline) -> float:

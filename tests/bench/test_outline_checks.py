@@ -40,7 +40,7 @@ def read_by_eye(mesh: TriMesh, seed: int) -> TriMesh:
     def off(places: FloatArray) -> FloatArray:
         levels = np.unique(np.round(places, 6))
         steps = np.diff(levels) * rng.uniform(0.9, 1.1, len(levels) - 1)
-        return np.interp(places, levels, np.concatenate([levels[:1], levels[0] + np.cumsum(steps)]))
+        return np.asarray(np.interp(places, levels, np.concatenate([levels[:1], levels[0] + np.cumsum(steps)])))
 
     for column in range(3):
         vertices[:, column] = off(vertices[:, column])
