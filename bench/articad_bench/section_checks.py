@@ -36,7 +36,7 @@ class Section(Check):
 
     Attributes:
         axis: That the plane is square to, in the frame of the whole.
-        at: Where it lies, from the lower end of what is cut [mm].
+        at: Where it lies, from the lower end of what is cut, or from its upper end if negative [mm].
         joint: Cuts the bodies alone that such joints move.
         pieces: How many pieces of matter there are.
         openings: How many openings there are with matter all round.
@@ -62,7 +62,8 @@ class Section(Check):
         told += [f"each {_by(self.piece)} mm" if self.piece else "", f"{in_words(self.openings)} openings" if self.openings else ""]
         told += [f"each {_by(self.clear)} mm" if self.clear else ""]
         of = "" if self.joint is None else f" of what is moved by {self.joint}"
-        return f"{', '.join(each for each in told if each)} in the section{of} square to {self.axis}, {self.at:g} mm from its lower end"
+        place = f"{abs(self.at):g} mm from its {'lower' if self.at >= 0 else 'upper'} end"
+        return f"{', '.join(each for each in told if each)} in the section{of} square to {self.axis}, {place}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         meshes = self._meshes(subject)
@@ -138,14 +139,16 @@ class _Cut:
 
 
 def _cut(meshes: Sequence[TriMesh], axis: int, at: float) -> _Cut:
-    """Return the section of meshes square to an axis, at a distance from their lower end [mm]."""
+    """Return the section of meshes square to an axis, at a distance from their lower end, or from their upper one if negative [mm]."""
     order = [(axis + 1) % 3, axis, (axis + 2) % 3]
     turned = [TriMesh(mesh.vertices[:, order], mesh.triangles) for mesh in meshes]
     low = np.min([mesh.bounds[0] for mesh in turned], axis=0)
-    sides = np.max([mesh.bounds[1] for mesh in turned], axis=0) - low
+    high = np.max([mesh.bounds[1] for mesh in turned], axis=0)
+    sides = high - low
     pitch = float(max(sides[0], sides[2])) / CELLS
     cells = (int(np.ceil(sides[0] / pitch)) + 2, 1, int(np.ceil(sides[2] / pitch)) + 2)
-    middle: FloatArray = np.array([low[0] - pitch, low[1] + at - pitch / 2, low[2] - pitch])
+    level = float(low[1] if at >= 0 else high[1]) + at
+    middle: FloatArray = np.array([low[0] - pitch, level - pitch / 2, low[2] - pitch])
     matter = np.any([filled_cells(mesh, middle, np.full(3, pitch), cells) for mesh in turned], axis=0)
     return _Cut(np.pad(matter[:, 0, :], 1), pitch)
 

@@ -128,6 +128,8 @@ _ON_PHOTOS: Final = {
 }
 """What photos show without a scale."""
 PHOTO: Final = 0.1  # of a measure, that somebody who reads photos with care may be off
+_VIEWED: Final = frozenset({"section", "holds", "wall"})
+"""What the views of a drawing show as well as photos do."""
 
 
 @dataclass(frozen=True)
@@ -459,7 +461,9 @@ def _drawn(task: Task, check: AnyCheck) -> str | None:
     if check.kind in _DRAWN and (task.drawing.legend or check.kind in {"size", "extent", "parts"}):
         return _DRAWN[check.kind]
     named = check.kind in {"part_size", "studs"} and task.drawing.parts
-    return f"drawing: sides of {', '.join(task.drawing.parts)}" if named else None
+    if named:
+        return f"drawing: sides of {', '.join(task.drawing.parts)}"
+    return f"drawing: its views, within {100 * PHOTO:g} %" if check.kind in _VIEWED and _is_readable(check) else None
 
 
 def _is_readable(check: AnyCheck) -> bool:
@@ -467,8 +471,9 @@ def _is_readable(check: AnyCheck) -> bool:
     tolerance = getattr(check, "tolerance", None)
     if check.kind in {"size", "part_size", "holes", "studs", "links"} and tolerance is not None:
         return bool(tolerance >= PHOTO) and getattr(check, "length", None) is None
-    return check.kind in {"joints", "extent", "travel", "wall"} and all(
-        high - low >= 2 * PHOTO * low for _, low, high in _values(check) if high > low
+    measured = _MEASURES[check.kind](check) if check.kind in _VIEWED else _values(check)
+    return check.kind in {"joints", "extent", "travel", *_VIEWED} and all(
+        high - low >= 2 * PHOTO * low for _, low, high in measured if high > low
     )
 
 

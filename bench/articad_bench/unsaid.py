@@ -83,7 +83,12 @@ UNSAID: Final = (
     Unsaid("freecad", "swing", _OF_A_CONE | {"moves"}, "FreeCAD limits no angle of a universal joint."),
     Unsaid("freecad", "linear", MOTION, "FreeCAD couples joints by gears, belts, racks and screws alone."),
     Unsaid("freecad", "weight", frozenset({"mass", "weighs"}), "FreeCAD holds no densities but those of its own library."),
-    Unsaid("step", "motion", MOTION | {"lead", "threads", "joined", "arranged", "carries", "holds", "passage"}, "STEP holds no joints."),
+    Unsaid(
+        "step",
+        "motion",
+        MOTION | {"lead", "threads", "joined", "arranged", "carries", "holds", "passage", "section"},
+        "STEP holds no joints.",
+    ),
     Unsaid("step", "weight", frozenset({"mass", "weighs"}), "STEP holds no densities."),
 )
 

@@ -477,6 +477,20 @@ def test_parts_that_touch_are_one_piece_and_what_a_joint_moves_is_cut_alone() ->
     assert not ok(axis="y", at=15, apart=[0, 4])
 
 
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+def test_a_plane_may_be_measured_from_the_upper_end(axis: str) -> None:
+    """A post with a wider roof."""
+    post = m3.Manifold.cube([40, 30, 100], center=True) + m3.Manifold.cube([60, 60, 10], center=True).translate([0, 0, 55.0])
+    subject = alone(post.rotate({"x": [0, 90, 0], "y": [-90, 0, 0], "z": [0, 0, 0]}[axis]))
+
+    def ok(at: float, sides: list[float]) -> bool:
+        return form({"kind": "section", "axis": axis, "at": at, "piece": sides}).judge(subject).ok
+
+    assert ok(-5, [60, 60])
+    assert ok(-15, [40, 30])
+    assert ok(5, [40, 30])
+
+
 @pytest.mark.parametrize(("places", "fits"), [((90,), True), ((-90,), True), ((60,), False), ((90, -60), False), ((), False)])
 def test_holes_lie_as_far_off_the_axis_of_another_round_as_the_text_says(places: tuple[float, ...], fits: bool) -> None:
     """A cheek with a spindle hole."""

@@ -79,6 +79,10 @@ def test_a_check_whose_number_no_text_states_is_found() -> None:
     assert (
         stated("A tube 24 mm outside with a wall of 2 mm.", {"kind": "holes", "diameter": 20, "number": [1, 1]}) == "follows: 24 - 2 x 2 mm"
     )
+    window = {"kind": "section", "axis": "x", "at": 10, "openings": [1, 1], "clear": [[300, 400], [100, 150]]}
+    assert stated("", window, drawing={}) == "drawing: its views, within 10 %"
+    assert stated("", window | {"clear": [[340, 360], [100, 150]]}, drawing={}) is None
+    assert stated("A box.", window) is None
     assert stated("A box.", {"kind": "stands", "degrees": 20}) is None
     assert stated("A box.", {"kind": "stands"}) == "all tasks: it stands freely"
     round_and_round = {"kind": "travel", "joint": {"type": "revolute", "span": "endless"}, "by": [355, 365]}

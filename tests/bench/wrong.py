@@ -330,20 +330,22 @@ def _corners(_check: Check, subject: Subject) -> Subject:
 
 
 def _cut_otherwise(check: Check, subject: Subject) -> Subject:
-    """Each part is the block of the whole: of another size where sizes are asked for, else hollow where nothing may be open, in two where one piece may be."""
+    """Each part is the block of the whole: of another size where sizes are asked for, else hollow where nothing may be open, in too many where one piece may be."""
     assert isinstance(check, Section)
     if check.piece or check.clear or check.apart:
         return _larger(check, subject)
     ends = subject.corners(subject.rest)
     middle, sides = ends.mean(axis=0), np.ptp(ends, axis=0)
+    aside = 2 * sides * ([0, 1, 0] if check.axis == "x" else [1, 0, 0])
 
-    def block(x: float, share: float) -> TriMesh:
-        return box(share * sides[0], share * sides[1], share * sides[2]).transformed(SE3.from_translation(middle + np.array([x, 0, 0])))
+    def block(place: int, share: float) -> TriMesh:
+        return box(share * sides[0], share * sides[1], share * sides[2]).transformed(SE3.from_translation(middle + place * aside))
 
     if check.openings == (0, 0):
         blocks = [block(0, 1.0), block(0, 0.9).flipped()]
     else:
-        blocks = [block(0, 1.0)] if check.pieces != (1, 1) else [block(0, 0.9), block(2 * sides[0], 0.9)]
+        many = int(check.pieces[1]) + 1 if check.pieces and check.pieces[0] <= 1 else 1
+        blocks = [block(place, 1.0) for place in range(many)]
     whole = merged(blocks)
     parts = [
         part if part.mesh is None else shaped_as(part, whole.transformed(subject.rest[part.name].inverse()))
