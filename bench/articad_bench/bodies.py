@@ -5,7 +5,7 @@ from __future__ import annotations
 from articad.kinematics.joints import Joint, JointType
 from articad_bench.subject import Subject
 
-__all__ = ["moved_bodies", "moving"]
+__all__ = ["carried", "moved_bodies", "moving"]
 
 
 def moving(subject: Subject) -> list[Joint]:
@@ -15,11 +15,24 @@ def moving(subject: Subject) -> list[Joint]:
 
 def moved_bodies(subject: Subject, joint: Joint) -> list[str]:
     """Return the body beyond a joint, seen from the ground; both bodies of a joint in a loop, without the ground."""
+    reached = _reached(subject, joint)
+    ends = dict.fromkeys((subject.rigid[joint.child], subject.rigid[joint.parent]))
+    return [end for end in ends if end not in reached] or [end for end in ends if end != subject.rigid[subject.assembly.ground]]
+
+
+def carried(subject: Subject, joint: Joint) -> list[str]:
+    """Return all parts that nothing but a joint connects to the ground; of a joint in a loop, the parts of the bodies that it moves."""
+    reached, moved = _reached(subject, joint), moved_bodies(subject, joint)
+    beyond = [name for name in subject.shaped if subject.rigid[name] not in reached]
+    return beyond or [name for name in subject.shaped if subject.rigid[name] in moved]
+
+
+def _reached(subject: Subject, joint: Joint) -> set[str]:
+    """Return the bodies that joints connect to the ground without one of them."""
     others = [(subject.rigid[each.parent], subject.rigid[each.child]) for each in moving(subject) if each is not joint]
     ground = subject.rigid[subject.assembly.ground]
     reached, fresh = {ground}, {ground}
     while fresh:
         fresh = {end for ends in others for end in ends if fresh & {*ends}} - reached
         reached |= fresh
-    ends = dict.fromkeys((subject.rigid[joint.child], subject.rigid[joint.parent]))
-    return [end for end in ends if end not in reached] or [end for end in ends if end != ground]
+    return reached

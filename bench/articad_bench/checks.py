@@ -6,6 +6,7 @@ a part by its size. Each judgement says what was wanted and what was measured.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
@@ -18,14 +19,14 @@ from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.certificates.fits import CONTACT_MM
 from articad.connectors import SE3, Mate
-from articad.disassembly.ways import Ways, ways_out
+from articad.disassembly.ways import Ways, ways_of
 from articad.interference.freedoms import freedoms
 from articad.interference.gauge import Gauge, placed
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
 from articad_bench.around import share_around
-from articad_bench.bodies import moved_bodies, moving
+from articad_bench.bodies import carried, moved_bodies, moving
 from articad_bench.check import Bounds, Vector, in_words, within
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
@@ -528,7 +529,7 @@ class Made(Check):
 
 
 class Captive(Check):
-    """The number of moving parts that cannot be removed in a straight line, regardless of their limits."""
+    """The number of moving parts that cannot be removed in a straight line, regardless of their limits: neither alone nor with what they carry."""
 
     kind: Literal["captive"] = "captive"
     number: Bounds
@@ -538,11 +539,24 @@ class Captive(Check):
         return f"{in_words(self.number)} moving parts are held by shape"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        held_by = {joint.child for joint in moving(subject)}
         ways = Ways(subject.scene, subject.rest)
-        free = [name for name in subject.shaped if name in held_by and any(way.free for way in ways_out(ways, name))]
-        held = len([name for name in subject.shaped if name in held_by]) - len(free)
+        children = {joint.child: joint for joint in moving(subject)}
+        parts = [name for name in subject.shaped if name in children]
+        free = [name for name in parts if self._leaves(subject, ways, name, children[name])]
+        held = len(parts) - len(free)
         return self.number[0] <= held <= self.number[1], f"{held}" + (f" (free: {', '.join(free)})" if free else "")
+
+    @staticmethod
+    def _leaves(subject: Subject, ways: Ways, name: str, joint: Joint) -> bool:
+        """Return whether a part leaves alone, with its body, or with all that its joint carries."""
+        body = [each for each in ways.parts if subject.rigid[each] == subject.rigid[name]]
+        beyond = [each for each in carried(subject, joint) if each in ways.parts]
+        directions = ways_of(ways.scene, ways.poses, name)
+        for together in dict.fromkeys((frozenset([name]), frozenset(body), frozenset(beyond))):
+            staying = [each for each in ways.parts if each not in together]
+            if any(math.isinf(ways.stop(sorted(together), staying, direction).travel) for direction in directions):
+                return True
+        return False
 
 
 class Simulates(Check):

@@ -124,6 +124,26 @@ def test_doubled_pins_and_parallel_slides_are_no_loops() -> None:
     assert one_loop.judge(of(*((name, box(5, 5, 5)) for name in names), joints=bars)).ok
 
 
+@pytest.mark.parametrize("headed", [True, False])
+def test_what_leaves_with_all_that_it_carries_is_not_held(headed: bool) -> None:
+    """A lever lies on a pin, and a collar slides on the lever: the collar keeps the lever from leaving alone, and only a head keeps both."""
+    post = [solid(box(80, 40, 6)), solid(placed(cylinder(5, 12.3), 0, 0, 8.9))]
+    pin = made("Add", *post, *([solid(placed(cylinder(8, 3), 0, 0, 16.5))] if headed else []))
+    lever = made("Subtract", solid(placed(box(60, 20, 11.8), 18, 0, 9.0)), solid(placed(cylinder(5.1, 40), 0, 0, 9)))
+    collar = made("Subtract", solid(placed(box(6, 30, 20), 60, 0, 20)), solid(placed(box(6, 20.4, 12.2), 60, 0, 20)))
+    raised = made("Add", solid(lever), solid(placed(box(20, 20, 11.8), 57, 0, 20)), solid(placed(box(4, 20, 22.8), 47, 0, 14.5)))
+    along = SE3.rot_y(math.pi / 2)
+    joints = [
+        joint("turn", "revolute", ("plate", at(0)), ("lever", at(0)), limits=[(0, math.pi / 2)]),
+        joint("slide", "slider", ("lever", along), ("collar", along), limits=[(-2.0, 2.0)]),
+    ]
+    subject = of(("plate", pin), ("lever", raised), ("collar", collar), joints=joints)
+
+    judged = form({"kind": "captive", "number": [1, 1]}).judge(subject)
+
+    assert judged.ok is headed, judged
+
+
 @pytest.mark.parametrize("sides", [(60, 20, 12), (50, 50, 8)])
 def test_the_frame_of_a_part_does_not_change_its_size(sides: tuple[float, float, float]) -> None:
     mesh = made("Subtract", solid(box(*sides)), solid(cylinder(3, 40)))
