@@ -38,22 +38,26 @@ class Section(Check):
         axis: That the plane is square to, in the frame of the whole.
         at: Where it lies, from the lower end of what is cut, or from its upper end if negative [mm].
         joint: Cuts the bodies alone that such joints move.
+        still: Cuts what does not move alone.
         pieces: How many pieces of matter there are.
         openings: How many openings there are with matter all round.
         apart: The distance of each piece from the nearest other one [mm].
         piece: Sides of the box of each piece, in any order: a length, its bounds, or None where any is accepted.
         clear: The same, of each opening.
+        area: Of all that is cut [mm²].
     """
 
     kind: Literal["section"] = "section"
     axis: Literal["x", "y", "z"]
     at: float
     joint: JointWanted | None = None
+    still: bool = False
     pieces: Bounds | None = None
     openings: Bounds | None = None
     apart: Bounds | None = None
     piece: Sides | None = None
     clear: Sides | None = None
+    area: Bounds | None = None
     tolerance: float = 0.02
 
     @property
@@ -61,7 +65,8 @@ class Section(Check):
         told = [f"{in_words(self.pieces)} pieces" if self.pieces else "", f"{in_words(self.apart)} mm apart" if self.apart else ""]
         told += [f"each {_by(self.piece)} mm" if self.piece else "", f"{in_words(self.openings)} openings" if self.openings else ""]
         told += [f"each {_by(self.clear)} mm" if self.clear else ""]
-        of = "" if self.joint is None else f" of what is moved by {self.joint}"
+        told += [f"{in_words(self.area)} mm²" if self.area else ""]
+        of = f" of what is moved by {self.joint}" if self.joint else " of what does not move" if self.still else ""
         place = f"{abs(self.at):g} mm from its {'lower' if self.at >= 0 else 'upper'} end"
         return f"{', '.join(each for each in told if each)} in the section{of} square to {self.axis}, {place}"
 
@@ -76,14 +81,19 @@ class Section(Check):
         ok &= self.apart is None or (bool(apart) and all(within(mm, self.apart) for mm in apart))
         for sides, found in ((self.piece, pieces), (self.clear, openings)):
             ok &= sides is None or (bool(found) and all(self._fits(cut.sides(each), sides, cut.pitch) for each in found))
-        told = [f"{len(pieces)} pieces ({_listed(cut, pieces)})", f"{len(openings)} openings ({_listed(cut, openings)})"]
+        ok &= self.area is None or within(cut.area, self.area)
+        told = [
+            f"{cut.area:.4g} mm² in {len(pieces)} pieces ({_listed(cut, pieces)})",
+            f"{len(openings)} openings ({_listed(cut, openings)})",
+        ]
         return ok, ", ".join([*told, *([f"{', '.join(f'{mm:.4g}' for mm in apart[:TOLD])} mm apart"] if apart else [])])
 
     def _meshes(self, subject: Subject) -> list[TriMesh]:
         """Return the meshes that are cut."""
         every = zip(subject.shaped, placed(subject), strict=True)
         if self.joint is None:
-            return [mesh for _, mesh in every]
+            ground = subject.rigid[subject.assembly.ground]
+            return [mesh for name, mesh in every if not self.still or subject.rigid[name] == ground]
         moved = {body for joint in self.joint.found(subject) for body in moved_bodies(subject, joint)}
         return [mesh for name, mesh in every if subject.rigid[name] in moved]
 
@@ -112,6 +122,11 @@ class _Cut:
 
     matter: Cells
     pitch: float
+
+    @property
+    def area(self) -> float:
+        """Area of all matter [mm²]."""
+        return float(self.matter.sum()) * self.pitch**2
 
     def pieces(self) -> list[Cells]:
         """Return each piece of matter."""

@@ -71,6 +71,7 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("funnel_kitchen", {"kind": "passage", "diameter": 13, "axis": [0, 0, 1]}),
     ("heat_sink_nine_fins", {"kind": "section", "axis": "z", "at": 20, "pieces": [9, 9], "apart": [7, 7.2], "piece": [1.5, 100]}),
     ("pulley_v_80", {"kind": "section", "axis": "z", "at": 10, "pieces": [1, 1], "openings": [1, 1], "clear": [16, [18, 19]]}),
+    ("toggle_clamp", {"kind": "section", "axis": "z", "at": 3, "still": True, "area": [7000, 7200]}),
     ("toggle_clamp", {"kind": "studs", "diameter": 12, "number": [1, 1]}),
     ("desk_lamp", {"kind": "wall", "mm": [1.8, 2.2], "number": [1, 1]}),
     ("wardrobe", {"kind": "volume", "cm3": [50000, 150000]}),
@@ -371,6 +372,17 @@ def test_what_lies_on_a_plane_goes_as_far_as_the_longer_of_its_ways() -> None:
     for wanted, fits in (({"span": [199, 201], "turn": "endless"}, True), ({"span": [59, 61]}, False), ({"turn": [0, 300]}, False)):
         row = {"kind": "joints", "joint": {"type": "planar"} | wanted, "number": [1, 1]}
         assert form(row).judge(subject).ok is fits
+
+
+@pytest.mark.parametrize(("still", "area"), [(False, 1000.0), (True, 600.0)])
+def test_a_section_has_the_area_of_what_is_cut_and_can_leave_out_what_moves(still: bool, area: float) -> None:
+    parts = [Part.from_mesh(name, box(*sides)) for name, sides in (("base", (30, 20, 10)), ("slide", (20, 20, 10)))]
+    slide = joint("slide", "slider", ("base", at(40, 0, 0)), ("slide", at(0)), limits=[(0.0, 9.0)])
+    subject = Subject(Assembly.from_parts("slide", parts=parts, joints=[slide], ground="base"))
+    row = {"kind": "section", "axis": "z", "at": 5, "still": still}
+
+    assert form(row | {"area": [0.99 * area, 1.01 * area]}).judge(subject).ok
+    assert not form(row | {"area": [1.1 * area, 9 * area]}).judge(subject).ok
 
 
 @pytest.mark.parametrize(("of", "ok"), [("parts", True), ("bodies", False), ("moving parts", False), ("moving bodies", False)])

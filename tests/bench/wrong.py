@@ -188,10 +188,10 @@ def _in_the_way(_check: Check, subject: Subject) -> Subject:
         q = _on_its_way(subject, driver)
         poses = dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
         joint = next(joint for joint in assembly.joints if joint.name == driver.joint)
-        goes = np.abs(poses[joint.child].matrix - subject.rest[joint.child].matrix).max() > 1e-9
-        mover = joint.child if goes else joint.parent
-        mover = (
-            mover if mover in subject.shaped else next(name for name in subject.shaped if poses[name].distance_to(subject.rest[name]) > 1)
+        goes = [end for end in (joint.child, joint.parent) if np.abs(poses[end].matrix - subject.rest[end].matrix).max() > 1e-9]
+        mover = next(  # a screw that has turned thirty-five times is where it was: what it drives has gone
+            (end for end in goes if end in subject.shaped),
+            next((name for name in subject.shaped if poses[name].distance_to(subject.rest[name]) > 1), joint.child),
         )
         stands = next(name for name in subject.shaped if float(poses[name].distance_to(subject.rest[name])) < 1e-9)
         ghost, mesh = assembly.parts[mover].mesh, assembly.parts[stands].mesh
@@ -332,7 +332,7 @@ def _corners(_check: Check, subject: Subject) -> Subject:
 def _cut_otherwise(check: Check, subject: Subject) -> Subject:
     """Each part is the block of the whole: of another size where sizes are asked for, else hollow where nothing may be open, in too many where one piece may be."""
     assert isinstance(check, Section)
-    if check.piece or check.clear or check.apart:
+    if check.piece or check.clear or check.apart or check.area:
         return _larger(check, subject)
     ends = subject.corners(subject.rest)
     middle, sides = ends.mean(axis=0), np.ptp(ends, axis=0)
