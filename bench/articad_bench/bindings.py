@@ -54,6 +54,8 @@ FACING: Final = re.compile(r"(?<!\w)[+-][xy]\b|\bx to the right\b|\bleft to righ
 """Words of a prompt that say which end of x or y something lies at."""
 TURNED_OVER: Final = (0.06, 0.15)
 """By how much the moments of a product that is turned over differ, at least, where a picture shows it, and where a text alone says it."""
+STRAIGHT: Final = frozenset({"front", "right", "top"})
+"""Views that show the outlines along the three axes."""
 BOUND: Final = (Moves, Made, Arranged, Outlined, Handed, Upright, Matter, Threads, Machined, Toleranced)
 
 
@@ -106,7 +108,7 @@ def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
         checks.append(Arranged(parts=_rows(rows), loosely=_form(task) == "photos", place=place))
     elif task.images and _bodies_are_stated(task, subject):
         checks.append(Arranged(parts=_rows(arrangement(subject, bodies=True)), bodies=True, loosely=_form(task) == "photos"))
-    if _form(task) == "photos":
+    if _shows_outlines(task):
         checks.append(outlined(subject))
     hand = handedness(subject) if shows_hands(task) else 0.0
     if hand > DETAIL:
@@ -114,6 +116,13 @@ def _likeness(task: Task, subject: Subject) -> list[AnyCheck]:
         loosely = hand <= HAND or _tells_sides(task)
         checks.append(Handed(matter=matter, margin=_rounded(hand / 2) if loosely else 0.0))
     return [*checks, *_standing(task, subject)]
+
+
+def _shows_outlines(task: Task) -> bool:
+    """Return whether pictures show the outlines along the three axes; sheets hold each part to its own drawing."""
+    if task.drawing is None or not task.images:
+        return False
+    return task.drawing.form == "photos" or (task.drawing.form == "overview" and {*task.drawing.views} >= STRAIGHT)
 
 
 def _standing(task: Task, subject: Subject) -> list[AnyCheck]:
