@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
+from articad.interference.relations import Groups
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 
 COUPLINGS = {"Gears": "gear", "Belt": "belt", "RackPinion": "rack", "Screw": "screw"}
@@ -54,16 +55,23 @@ class _PartMotion:
         turns: True for a rotation.
         direction: Unit vector in the assembly; the part moves in its sense as the coordinate grows.
         point: A point on the axis.
+        against: The body on the other side of the joint.
     """
 
     column: str
     turns: bool
     direction: FloatArray
     point: FloatArray
+    against: str
+
+    @property
+    def joint(self) -> str:
+        """Name of the joint."""
+        return self.column.partition(".")[0]
 
 
 class PartMotions:
-    """The motions that joints give parts: each joint is looked at once, however many couplings a part has.
+    """The motions that joints give parts, and what is fixed to these: each joint is looked at once, however many couplings a part has.
 
     Args:
         joints: The joints.
@@ -71,34 +79,41 @@ class PartMotions:
     """
 
     def __init__(self, joints: Iterable[Joint], poses: Mapping[str, SE3]) -> None:
-        self._poses = poses
+        joints = list(joints)
+        self._poses, self._bodies = poses, Groups()
+        for joint in joints:
+            if joint.type is JointType.FIXED:
+                self._bodies.join(joint.parent, joint.child)
         self._joints: dict[str, list[Joint]] = {}
         for joint in joints:
-            for part in {joint.parent, joint.child}:
-                self._joints.setdefault(part, []).append(joint)
+            ends = {self._bodies.leader(joint.parent), self._bodies.leader(joint.child)}
+            for body in ends if len(ends) == 2 else ():
+                self._joints.setdefault(body, []).append(joint)
         self._found: dict[tuple[str, bool], tuple[list[_PartMotion], FloatArray, FloatArray]] = {}
 
-    def axis(self, part: str, frame: SE3, *, turns: bool) -> _PartMotion | None:
-        """Return the coordinate that turns or shifts a part; of several turns, the one about the frame's z axis."""
-        if (part, turns) not in self._found:
-            made = list(self._of(part, turns=turns))
+    def of(self, part: str, frame: SE3, *, turns: bool) -> list[_PartMotion]:
+        """Return the coordinates that turn or shift a part; of several turns, those about the frame's z axis."""
+        body = self._bodies.leader(part)
+        if (body, turns) not in self._found:
+            made = list(self._of(body, turns=turns))
             rows = [[motion.direction, motion.point] for motion in made]
             directions, points = np.moveaxis(np.array(rows).reshape(-1, 2, 3), 1, 0)
-            self._found[part, turns] = made, directions, points
-        found, directions, points = self._found[part, turns]
-        if turns:
+            self._found[body, turns] = made, directions, points
+        found, directions, points = self._found[body, turns]
+        if turns and len(found) > 1:
             on = np.flatnonzero(_on_line(directions, points, frame.rotation[:, 2], frame.translation))
-            found = [found[place] for place in on[:2]] or found
-        return found[0] if len(found) == 1 else None
+            return [found[place] for place in on] or found
+        return found
 
-    def _of(self, part: str, *, turns: bool) -> Iterator[_PartMotion]:
-        """Yield the coordinates of all joints that turn or shift a part."""
-        for joint in self._joints.get(part, ()):
+    def _of(self, body: str, *, turns: bool) -> Iterator[_PartMotion]:
+        """Yield the coordinates of all joints that turn or shift a body."""
+        for joint in self._joints.get(body, ()):
             at = self._poses[joint.parent] @ joint.T_parent_connector
-            sense = 1.0 if joint.child == part else -1.0
+            ends = self._bodies.leader(joint.parent), self._bodies.leader(joint.child)
+            sense, against = (1.0, ends[0]) if ends[1] == body else (-1.0, ends[1])
             if joint.type in (JointType.REVOLUTE, JointType.SLIDER, JointType.CYLINDRICAL, JointType.SCREW):
                 columns = [column for column in joint.columns if (column.unit == "rad") is turns]
-                yield from (_PartMotion(column.name, turns, sense * at.rotation[:, 2], at.translation) for column in columns)
+                yield from (_PartMotion(column.name, turns, sense * at.rotation[:, 2], at.translation, against) for column in columns)
 
 
 def _on_line(directions: FloatArray, points: FloatArray, z: FloatArray, point: FloatArray) -> NDArray[np.bool_]:
@@ -168,15 +183,39 @@ def coupling_of(stated: Stated, motions: PartMotions) -> Coupling | str:
     if wrong := _size_of(stated):
         return wrong
     sides = list(zip(stated.parts, stated.frames, strict=True))
-    turns = [motions.axis(part, frame, turns=True) for part, frame in sides]
+    turns = [motions.of(part, frame, turns=True) for part, frame in sides]
     if stated.kind in ("Gears", "Belt"):
-        return _wheels(stated, *turns)
-    slides = [motions.axis(part, frame, turns=False) for part, frame in sides]
+        return _wheels(stated, *(found[0] if len(found) == 1 else None for found in turns))
+    slides = [motions.of(part, frame, turns=False) for part, frame in sides]
     for one, other in ((0, 1), (1, 0), (0, 0), (1, 1)):
-        turn, slide = turns[one], slides[other]
-        if turn is not None and slide is not None and turn.column.partition(".")[0] != slide.column.partition(".")[0]:
-            return _thread(stated, turn, slide) if stated.kind == "Screw" else _rack(stated, turn, slide, stated.frames[1 - one])
+        if pair := _pair(turns[one], slides[other], along=stated.kind == "Screw"):
+            return _thread(stated, *pair) if stated.kind == "Screw" else _rack(stated, *pair, stated.frames[1 - one])
     return "needs one part that turns and one that slides, each by a joint of its own"
+
+
+def _pair(turns: Iterable[_PartMotion], slides: Sequence[_PartMotion], *, along: bool) -> tuple[_PartMotion, _PartMotion] | None:
+    """Return the turn and the slide that are coupled; None if there is none, or more than one.
+
+    A thread shifts along the axis about which it turns, and a rack across it. Of stages that slide one on the other in one direction, the
+    one is meant that slides on what bears the spindle or the pinion.
+
+    Args:
+        turns: Of the one part.
+        slides: Of the other part.
+        along: Whether the slide is along the axis of the turn, rather than across it.
+    """
+    pairs = [(turn, slide) for turn in turns for slide in slides if turn.joint != slide.joint]
+    if len(pairs) > 1:
+        pairs = [pair for pair in pairs if _leads(*pair, along=along)]
+    if len(pairs) > 1:
+        pairs = [(turn, slide) for turn, slide in pairs if turn.against == slide.against]
+    return pairs[0] if len(pairs) == 1 else None
+
+
+def _leads(turn: _PartMotion, slide: _PartMotion, *, along: bool) -> bool:
+    """Return whether a slide is along the axis of a turn, or across it."""
+    off = np.linalg.norm(np.cross(turn.direction, slide.direction)) if along else abs(float(np.dot(turn.direction, slide.direction)))
+    return bool(off < _PARALLEL)
 
 
 def _size_of(stated: Stated) -> str | None:

@@ -89,6 +89,42 @@ def test_a_thread_between_a_part_that_turns_and_one_that_slides_keeps_its_hand(s
     assert coupling.ratio == pytest.approx(ratio)
 
 
+def stages(seed: int) -> Assembly:
+    """Stages that slide one on the other, across or along each other; a spindle that turns in the stage below moves each."""
+    rng = np.random.default_rng(seed)
+    number, ratios = int(rng.integers(2, 5)), []
+    turned = [SE3.identity() if rng.random() < 0.4 else SE3.from_axis_angle(rng.normal(size=3), 1.2) for _ in range(number)]
+    ways = [random_frame(rng, 20.0) for _ in range(number)]
+    ways = [ways[level - 1] if level and turned[level].allclose(SE3.identity()) else way @ turned[level] for level, way in enumerate(ways)]
+    on = [SE3.identity(), *(random_frame(rng, 9.0) for _ in range(number))]
+    parts = [block(f"stage_{i}", (60, 60, 10), on=on[i], up=ways[min(i, number - 1)]) for i in range(number + 1)]
+    spindles = [block(f"spindle_{i}", (6, 6, 60), on=random_frame(rng, 9.0)) for i in range(number)]
+    joints, couplings = [], []
+    for i in range(number):
+        joints.append(declare.revolute(f"turn_{i}", parts[i]["up"], spindles[i]["on"], limits=(-30.0, 30.0), driver=True))
+        joints.append(declare.slider(f"shift_{i}", parts[i]["up"], parts[i + 1]["on"], limits=(-50.0, 50.0)))
+        ratios.append(float(rng.choice([-1.0, 1.0])) * rng.uniform(0.1, 1.0))
+        couplings.append(Coupling(f"thread_{i}", "screw", f"turn_{i}", f"shift_{i}", ratios[-1]))
+    if rng.random() < 0.5:  # the topmost spindle turns in a bearing block that is fixed to its stage
+        parts.append(block("bearing", (9, 9, 9), on=SE3.identity(), bore=SE3.identity()))
+        joints[-2] = declare.revolute(f"turn_{number - 1}", parts[-1]["bore"], spindles[-1]["on"], limits=(-30.0, 30.0), driver=True)
+        joints.append(declare.fixed("bearing_held", parts[number - 1]["up"], parts[-1]["on"]))
+    order = rng.permutation(number)
+    return Assembly.from_parts(
+        "stages", parts=[*parts, *spindles], joints=joints, couplings=[couplings[i] for i in order], ground="stage_0"
+    )
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_thread_moves_the_stage_that_slides_where_its_spindle_turns(seed: int, tmp_path: Path) -> None:
+    assembly = stages(seed)
+    wanted = {(each.a, each.b): each.ratio for each in assembly.mechanism.couplings}
+
+    read = {(each.a, each.b): each.ratio for each in read_back(assembly, tmp_path).mechanism.couplings}
+
+    assert read == pytest.approx(wanted)
+
+
 def test_a_thread_without_lead_is_refused(tmp_path: Path) -> None:
     (file,) = write_freecad_alone(screw(0)).write(tmp_path)
     switch_on(file)
