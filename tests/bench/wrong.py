@@ -365,6 +365,19 @@ def _one_aside(_check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, parts))
 
 
+def _with_a_mast(_check: Check, subject: Subject) -> Subject:
+    """A thin mast stands on it, as high as the whole is large."""
+    last, tall = subject.shaped[-1], float(np.linalg.norm(subject.size))
+    low, high = subject.corners(subject.rest)
+    foot = SE3.from_translation(np.array([*(low + high)[:2] / 2, high[2] + tall / 2]))
+    mast = box(0.02 * tall, 0.02 * tall, tall).transformed(subject.rest[last].inverse() @ foot)
+    parts = [
+        shaped_as(part, merged([part.mesh, mast])) if name == last and part.mesh is not None else part
+        for name, part in subject.assembly.parts.items()
+    ]
+    return Subject(changed(subject.assembly, parts))
+
+
 def _mirror_image(_check: Check, subject: Subject) -> Subject:
     """Every body is where its mirror image would be."""
     parts = []
@@ -540,7 +553,7 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "weighs": _larger,
     "room": _crowded,
     "arranged": _one_aside,
-    "outlined": _one_aside,
+    "outlined": _with_a_mast,
     "handed": _mirror_image,
     "upright": _upside_down,
     "unchanged": _all_new,
