@@ -11,6 +11,7 @@ from articad.arrays import FloatArray
 from articad.connectors import SE3
 from articad.geometry import TriMesh
 from articad.kinematics.joints import Joint
+from articad_bench.bodies import parts_of
 from articad_bench.check import Bounds, widened
 from articad_bench.solids import ray_lengths
 from articad_bench.subject import Subject
@@ -33,7 +34,7 @@ def share_around(subject: Subject, joint: Joint, mm: Bounds) -> float:
 
 def _meshes(subject: Subject, part: str, into: SE3) -> list[TriMesh]:
     """Return the meshes of the body of a part in another frame, at rest."""
-    body = [name for name in subject.shaped if subject.rigid[name] == subject.rigid[part]]
+    body = parts_of(subject, subject.rigid[part])
     return [mesh.transformed(into @ subject.rest[name]) for name in body if (mesh := subject.assembly.parts[name].mesh) is not None]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from articad.kinematics.joints import Joint, JointType
 from articad_bench.subject import Subject
 
-__all__ = ["carried", "moved_bodies", "moving"]
+__all__ = ["carried", "moved_bodies", "moving", "parts_of"]
 
 
 def moving(subject: Subject) -> list[Joint]:
@@ -22,9 +22,14 @@ def moved_bodies(subject: Subject, joint: Joint) -> list[str]:
 
 def carried(subject: Subject, joint: Joint) -> list[str]:
     """Return all parts that nothing but a joint connects to the ground; of a joint in a loop, the parts of the bodies that it moves."""
-    reached, moved = _reached(subject, joint), moved_bodies(subject, joint)
+    reached = _reached(subject, joint)
     beyond = [name for name in subject.shaped if subject.rigid[name] not in reached]
-    return beyond or [name for name in subject.shaped if subject.rigid[name] in moved]
+    return beyond or [name for body in moved_bodies(subject, joint) for name in parts_of(subject, body)]
+
+
+def parts_of(subject: Subject, body: str) -> list[str]:
+    """Return the parts of a body that have a shape."""
+    return [name for name in subject.shaped if subject.rigid[name] == body]
 
 
 def _reached(subject: Subject, joint: Joint) -> set[str]:

@@ -105,7 +105,7 @@ the suite and how to submit a cheat of your own.
 | backward | its joints go to the other side of rest, where a side is asked for |
 | notched | a corner of its largest part cut off, 1 to 2 % of it, where sheets are given |
 | slipped | its last part beside its place, along its longest side, where sheets are given |
-| barred | a bar on the back of its largest part, where photos are given |
+| barred | a bar on the back of its largest part, where photos or a drawing of the whole are given |
 | stuck | sleeves slide and do not turn, universal joints lean one way alone, what lies on a plane slides one way alone |
 | overturned | upside down, or facing the other way, where the text or a picture says how it stands |
 | other | the reference of another task |

@@ -26,7 +26,7 @@ from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
 from articad_bench.around import share_around
-from articad_bench.bodies import carried, moved_bodies, moving
+from articad_bench.bodies import carried, moved_bodies, moving, parts_of
 from articad_bench.check import Bounds, Vector, in_words, within
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
@@ -488,7 +488,7 @@ def _least_play(subject: Subject, joint: Joint, fit: Fit, place: SE3) -> float |
 
 def _between_bodies(subject: Subject, joint: Joint) -> float:
     """Return the distance of the two bodies that a joint connects, with all that is fixed to them [mm]."""
-    bodies = [[name for name in subject.shaped if subject.rigid[name] == subject.rigid[end]] for end in (joint.parent, joint.child)]
+    bodies = [parts_of(subject, subject.rigid[end]) for end in (joint.parent, joint.child)]
     return min(subject.apart(a, b) for a in bodies[0] for b in bodies[1])
 
 
@@ -685,7 +685,7 @@ def moved_shares(subject: Subject, joint: Joint) -> list[tuple[float, float]]:
     volumes = {name: abs(subject.assembly.parts[name].mesh.volume) for name in subject.shaped}  # type: ignore[union-attr]
     shares = []
     for body in moved_bodies(subject, joint):
-        parts = [name for name in subject.shaped if subject.rigid[name] == body]
+        parts = parts_of(subject, body)
         side = float(np.linalg.norm(np.ptp(subject.corners(subject.rest, parts), axis=0))) if parts else 0.0
         shares.append((sum(volumes[name] for name in parts) / sum(volumes.values()), side / float(np.linalg.norm(subject.size))))
     return shares
@@ -710,7 +710,7 @@ def _stroke_poses(subject: Subject, driver: str) -> Iterator[Any]:
 
 def _reached(subject: Subject, bodies: Collection[str], toward: FloatArray) -> dict[str, float]:
     """Return how far the centre of matter of each body comes toward a side, seen from rest, the most that any driver makes it [mm]."""
-    parts = {body: [name for name in subject.shaped if subject.rigid[name] == body] for body in bodies}
+    parts = {body: parts_of(subject, body) for body in bodies}
     weights, centres = {}, {}
     for name in {name for members in parts.values() for name in members}:
         mesh = subject.assembly.parts[name].mesh

@@ -12,6 +12,7 @@ import numpy as np
 from articad.connectors import SE3
 from articad.interference.surface import surface_distance, whole_surface
 from articad.kinematics.joints import Joint, JointType
+from articad_bench.bodies import parts_of
 from articad_bench.check import Check
 from articad_bench.subject import Subject
 
@@ -85,7 +86,7 @@ def _parts(subject: Subject, joint: Joint) -> list[str]:
     """Return the parts of the body that a joint holds on the ground."""
     ground = subject.rigid[subject.assembly.ground]
     (body,) = {subject.rigid[joint.parent], subject.rigid[joint.child]} - {ground}
-    return [name for name in subject.shaped if subject.rigid[name] == body]
+    return parts_of(subject, body)
 
 
 def _meet(subject: Subject, a: str, T_a: SE3, b: str, T_b: SE3) -> bool:

@@ -1,4 +1,4 @@
-"""Check of the outlines that photos show: what stands out or is left out is seen against the ground behind it."""
+"""Check of the outlines that photos and drawings of the whole show: what stands out or is left out is seen against the ground behind it."""
 
 from __future__ import annotations
 

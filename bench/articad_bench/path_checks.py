@@ -75,7 +75,7 @@ class Floor(Check):
                 if name in subject.shaped:
                     heights = np.tensordot(poses[:, column].rotation[:, 2], subject.hull(name), axes=(1, 1)).min(axis=1)
                     lowest = min(lowest, float((heights + poses[:, column].translation[:, 2]).min()) - ground)
-        return lowest >= -SUNK_MM, f"{-lowest:.3g} mm below it"
+        return lowest >= -SUNK_MM, f"{abs(lowest):.3g} mm below it"
 
 
 class Turns(Check):

@@ -15,7 +15,7 @@ from articad.arrays import FloatArray
 from articad.geometry import TriMesh
 from articad_bench.bodies import moved_bodies
 from articad_bench.check import Bounds, Check, in_words, within
-from articad_bench.shape_checks import placed
+from articad_bench.shape_checks import placed, standing
 from articad_bench.solids import filled_cells
 from articad_bench.subject import Subject
 from articad_bench.wanted import JointWanted
@@ -90,12 +90,10 @@ class Section(Check):
 
     def _meshes(self, subject: Subject) -> list[TriMesh]:
         """Return the meshes that are cut."""
-        every = zip(subject.shaped, placed(subject), strict=True)
         if self.joint is None:
-            ground = subject.rigid[subject.assembly.ground]
-            return [mesh for name, mesh in every if not self.still or subject.rigid[name] == ground]
+            return standing(subject) if self.still else placed(subject)
         moved = {body for joint in self.joint.found(subject) for body in moved_bodies(subject, joint)}
-        return [mesh for name, mesh in every if subject.rigid[name] in moved]
+        return [mesh for name, mesh in zip(subject.shaped, placed(subject), strict=True) if subject.rigid[name] in moved]
 
     def _fits(self, found: tuple[float, float], wanted: Sides, pitch: float) -> bool:
         """Return whether sides are those that are wanted, in one order or the other; a cell more or less is no difference."""

@@ -86,7 +86,7 @@ FOLLOWS: Final = {
     "weighs": "follows from the measures and the material",
     "captive": "words: what cannot come off",
     "arranged": "picture: where the parts lie",
-    "outlined": "photos: the outlines",
+    "outlined": "picture: the outlines",
     "handed": "picture, or words of a side",
     "upright": "picture, or words of what is above, below, in front or behind",
     "unchanged": "edit: what is not to change",

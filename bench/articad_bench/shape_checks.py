@@ -144,9 +144,7 @@ class Passage(Check):
         return f"a passage of {self.diameter:g} mm along {self.axis}{', whatever moves in it' if self.still else ''}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        ground = subject.rigid[subject.assembly.ground]
-        every = zip(subject.shaped, placed(subject), strict=True)
-        meshes = [mesh for name, mesh in every if not self.still or subject.rigid[name] == ground]
+        meshes = standing(subject) if self.still else placed(subject)
         holes = [found for mesh in meshes for found in rounds(mesh) if self._is(found)]
         free = sum(_goes_through(meshes, hole, 2 * float(np.linalg.norm(subject.size))) for hole in holes)
         return free > 0, f"{free} of {len(holes)} such holes are part of one"
@@ -280,6 +278,12 @@ class Symmetric(Check):
 def placed(subject: Subject) -> list[TriMesh]:
     """Return the meshes of the parts that have one, as they are at rest."""
     return [mesh.transformed(subject.rest[name]) for name in subject.shaped if (mesh := subject.assembly.parts[name].mesh) is not None]
+
+
+def standing(subject: Subject) -> list[TriMesh]:
+    """Return the meshes of the parts that do not move, at rest, in the frame of the whole."""
+    ground = subject.rigid[subject.assembly.ground]
+    return [mesh for name, mesh in zip(subject.shaped, placed(subject), strict=True) if subject.rigid[name] == ground]
 
 
 def same_parts(first: Subject, second: Subject, slack: float) -> bool:

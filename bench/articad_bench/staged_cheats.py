@@ -21,7 +21,7 @@ from articad.kinematics import Coupling, Joint
 from articad.kinematics.joints import JointLimits, JointType
 from articad_bench.subject import Subject
 
-__all__ = ["STAGED", "StagedCheat", "alike", "staged_cheats"]
+__all__ = ["STAGED", "StagedCheat", "alike", "of_the_same", "staged_cheats"]
 
 STAGED: Final = ("given", "short", "stage", "partly", "side", "crumbs")
 """Kinds of these cheats."""
@@ -186,7 +186,7 @@ def _stretched(after: Assembly, name: str, axis: int, factor: float) -> Assembly
         return after
     middle = part.mesh.bounds.mean(axis=0)
     vertices = middle + (part.mesh.vertices - middle) * np.where(np.arange(3) == axis, factor, 1.0)
-    return replace(after, parts={**after.parts, name: _of_the_same(part, TriMesh(vertices, part.mesh.triangles))})
+    return replace(after, parts={**after.parts, name: of_the_same(part, TriMesh(vertices, part.mesh.triangles))})
 
 
 def _with_part(after: Assembly, before: Assembly, name: str) -> Assembly:
@@ -221,13 +221,13 @@ def _all_new(after: Assembly, crumbs: int) -> Assembly:
 def _larger(part: Part) -> Part:
     if part.mesh is None:
         return part
-    return _of_the_same(part, part.mesh.scaled(1 + HAIR))
+    return of_the_same(part, part.mesh.scaled(1 + HAIR))
 
 
-def _of_the_same(part: Part, mesh: TriMesh) -> Part:
+def of_the_same(part: Part, mesh: TriMesh) -> Part:
     """Return a part of another shape, of the same stuff."""
     density = 1e9 * part.mass.mass / abs(part.mesh.volume) if part.mass is not None and part.mesh is not None else None
-    return Part.from_mesh(part.name, mesh, density=density)
+    return replace(Part.from_mesh(part.name, mesh, density=density), color=part.color)
 
 
 def _with_crumbs(assembly: Assembly, number: int) -> Assembly:

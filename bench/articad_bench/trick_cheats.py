@@ -23,6 +23,7 @@ from articad_bench.machined_checks import Machined
 from articad_bench.outline_checks import Outlined
 from articad_bench.room_checks import Weighs
 from articad_bench.shape_checks import Holds
+from articad_bench.staged_cheats import of_the_same
 from articad_bench.subject import Subject
 from articad_bench.task import Task
 
@@ -111,11 +112,11 @@ def _slipped(task: Task, reference: Assembly) -> Assembly | None:
     name, subject = names[-1], Subject(reference)
     mesh = _mesh(reference, name)
     way = np.eye(3)[int(np.argmax(np.ptp(mesh.vertices, axis=0)))] * SLIP * float(np.linalg.norm(subject.size))
-    return _with(reference, {name: _made(reference, name, mesh.transformed(SE3.from_translation(way)))})
+    return _with(reference, {name: of_the_same(reference.parts[name], mesh.transformed(SE3.from_translation(way)))})
 
 
 def _barred(task: Task, reference: Assembly) -> Assembly | None:
-    """Return the reference with a bar on the back of its largest part, if photos show outlines without one."""
+    """Return the reference with a bar on the back of its largest part, if a picture shows its outlines."""
     if not _of(task, Outlined):
         return None
     subject = Subject(reference)
@@ -171,11 +172,4 @@ def _part(reference: Assembly, name: str, body: manifold3d.Manifold) -> Part | N
         return None
     found = max(pieces, key=lambda piece: piece.volume()).to_mesh64()
     mesh = TriMesh(np.asarray(found.vert_properties)[:, :3].astype(np.float64), np.asarray(found.tri_verts).astype(np.int32))
-    return _made(reference, name, mesh)
-
-
-def _made(reference: Assembly, name: str, mesh: TriMesh) -> Part:
-    """Return a part of another shape, of the same stuff."""
-    part, was = reference.parts[name], abs(_mesh(reference, name).volume)
-    density = 1000.0 if part.mass is None or not was else 1e9 * part.mass.mass / was
-    return replace(Part.from_mesh(name, mesh, density=density), color=part.color)
+    return of_the_same(reference.parts[name], mesh)
