@@ -8,6 +8,9 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
+import threading
+import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -369,6 +372,9 @@ def test_the_sweep_leaves_what_is_in_use_or_not_ours(tmp_path: Path) -> None:
 
 WRITER = """
 import sys
+import tempfile
+import threading
+import time
 from pathlib import Path
 from articad.processes import scratch
 target = Path(sys.argv[1])
@@ -406,6 +412,43 @@ def test_what_a_killed_writer_left_beside_its_target_goes_with_the_next_writer(k
     assert (tmp_path / ".articad-mine").exists()
     subprocess.run([sys.executable, "-c", code, str(tmp_path / "other")], check=True)
     assert {path.name for path in tmp_path.iterdir()} <= {"target", ".articad-mine", "other"}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such locks: nothing is swept there")
+@pytest.mark.parametrize("kind", ["file", "folder"])
+def test_what_a_sweep_takes_before_its_maker_has_locked_it_is_made_again(kind: str, tmp_path: Path) -> None:
+    """A sweep that comes between the making and the lock holds the lock until it has removed what it found."""
+    import fcntl
+
+    made: list[Path] = []
+    swept: list[threading.Thread] = []
+
+    def make() -> Path:
+        place = Path(tempfile.mkdtemp(dir=tmp_path))
+        if kind == "file":
+            place.rmdir()
+            place.touch()
+        made.append(place)
+        if len(made) == 1:
+            lock = os.open(place, os.O_RDONLY)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+
+            def sweep() -> None:
+                time.sleep(0.2)
+                (place.unlink if kind == "file" else place.rmdir)()
+                os.close(lock)
+
+            swept.append(threading.Thread(target=sweep))
+            swept[0].start()
+        return place
+
+    place, lock = scratch._locked(make)
+    swept[0].join()
+    assert len(made) == 2
+    assert place == made[1]
+    assert place.exists()
+    assert lock is not None
+    os.close(lock)
 
 
 def test_a_program_is_never_taken_from_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -253,17 +253,28 @@ def _home() -> Path:
 
 
 def _locked(make: Callable[[], Path]) -> tuple[Path, int | None]:
-    """Make a file or folder and lock it. A sweep of another process may come between the two; then there is another try."""
+    """Make a file or folder and lock it. A sweep of another process may come between the two; then there is another try.
+
+    The sweep holds the lock while it removes what it took for abandoned, so this one waits for it.
+    """
     for _ in range(_TRIES):
         place = make()
-        lock = _lock(place)
+        lock = _lock(place, waiting=True)
         if lock is not None or place.exists():
             break  # without a lock: this file system has none, and nothing sweeps here
     return place, lock
 
 
-def _lock(place: Path) -> int | None:
-    """Return a descriptor that holds the lock of a file or folder; None if it is not ours, is gone, or cannot be locked."""
+def _lock(place: Path, *, waiting: bool = False) -> int | None:
+    """Return a descriptor that holds the lock of a file or folder.
+
+    Args:
+        place: The file or folder.
+        waiting: Whether to wait while another process holds the lock.
+
+    Returns:
+        None if it is not ours, is gone, or cannot be locked.
+    """
     if sys.platform == "win32":
         return None
     import fcntl  # noqa: PLC0415 - Windows has none
@@ -273,7 +284,7 @@ def _lock(place: Path) -> int | None:
     except OSError:
         return None
     try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(lock, fcntl.LOCK_EX | (0 if waiting else fcntl.LOCK_NB))
         opened, named = os.fstat(lock), place.lstat()
         if opened.st_uid == os.geteuid() and os.path.samestat(opened, named):
             return lock
