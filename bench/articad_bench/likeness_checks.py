@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations, product
 from typing import Final, Literal
 
@@ -175,8 +175,8 @@ class Handed(Check):
         if not subject.shaped:
             return float("inf"), float("inf")
         wanted = np.array(self.matter)
-        ways = (TURNS, [turn @ MIRROR for turn in TURNS])
-        straight, mirrored = (min(float(np.linalg.norm(moments(_turned(subject, turn)) - wanted)) for turn in turns) for turns in ways)
+        own = moments_of(subject)
+        straight, mirrored = (_difference(own, wanted, turns) for turns in (TURNS, [turn @ MIRROR for turn in TURNS]))
         return straight, mirrored
 
 
@@ -216,26 +216,38 @@ def turned_over(subject: Subject, wanted: FloatArray, *, faces: bool) -> tuple[f
         faces: Whether it is compared as it faces; else turned by the quarters with which it is most alike.
     """
     ways = (TURNS[:1] if faces else TURNS, [turn @ OVER for turn in TURNS], TURNS[2:3])
-    straight, over, half = (min(float(np.linalg.norm(moments(_turned(subject, turn)) - wanted)) for turn in turns) for turns in ways)
+    own = moments_of(subject)
+    straight, over, half = (_difference(own, wanted, turns) for turns in ways)
     return straight, over, half
 
 
 def handedness(subject: Subject) -> float:
     """Return by how much the moments of a product differ from those of its mirror image."""
     own = moments_of(subject)
-    return min(float(np.linalg.norm(moments(_turned(subject, turn @ MIRROR)) - own)) for turn in TURNS)
+    return _difference(own, own, [turn @ MIRROR for turn in TURNS])
 
 
 def moments_of(subject: Subject) -> FloatArray:
     """Return the `moments` of a product as it stands at rest."""
-    return moments(_turned(subject, TURNS[0]))
-
-
-def _turned(subject: Subject, turn: FloatArray) -> list[FloatArray]:
-    """Return the triangles of all parts at rest, `(n, 3, 3)` each, about the middle of the whole and turned or mirrored."""
     middle = subject.corners(subject.rest).mean(axis=0)
-    order = [0, 1, 2] if np.linalg.det(turn) > 0 else [0, 2, 1]
-    return [((mesh.vertices - middle) @ turn.T)[mesh.triangles[:, order]] for mesh in placed(subject)]
+    return moments([(mesh.vertices - middle)[mesh.triangles] for mesh in placed(subject)])
+
+
+def _difference(own: FloatArray, wanted: FloatArray, turns: Iterable[FloatArray]) -> float:
+    """Return the least by which moments differ from others when they are turned or mirrored."""
+    return min(float(np.linalg.norm(_turned(own, turn) - wanted)) for turn in turns)
+
+
+def _turned(own: FloatArray, turn: FloatArray) -> FloatArray:
+    """Return the moments `(19,)` of what is turned or mirrored so that each axis comes to lie along another one, or against it.
+
+    With u = T v, each row of T one ±1, the moment of u^p is ±1 times that of v^q: q is |T|^T p, and the sign that of the product of the ±1, each
+    as often as p says.
+    """
+    powers = np.array(POWERS)
+    places = [POWERS.index(tuple(power)) for power in (powers @ np.abs(turn)).astype(int).tolist()]
+    signs: FloatArray = np.prod(turn.sum(axis=1) ** powers, axis=1)
+    return signs * own[places]
 
 
 def moments(bodies: Sequence[FloatArray]) -> FloatArray:
@@ -248,6 +260,8 @@ def moments(bodies: Sequence[FloatArray]) -> FloatArray:
     volumes = np.linalg.det(corners) / 6
     tetrahedra = np.concatenate([np.zeros((len(corners), 1, 3)), corners], axis=1)
     centre = tetrahedra.mean(axis=1)
-    points = [(_POINT_WEIGHTS[0], centre)] + [(_POINT_WEIGHTS[1], (2 * centre + tetrahedra[:, i]) / 3) for i in range(4)]
-    totals = [sum(weight * float((volumes * (at**power).prod(axis=1)).sum()) for weight, at in points) for power in POWERS]
+    points = np.stack([centre, *((2 * centre + tetrahedra[:, i]) / 3 for i in range(4))])
+    weights = np.repeat(_POINT_WEIGHTS, (1, 4))[:, None] * volumes
+    powers = [np.ones_like(points), points, points * points, points * points * points]
+    totals = [float((weights * powers[a][..., 0] * powers[b][..., 1] * powers[c][..., 2]).sum()) for a, b, c in POWERS]
     return np.array(totals) / float(volumes.sum())
