@@ -438,7 +438,9 @@ class Gap(Check):
     def _gap(self, subject: Subject, joint: Joint) -> float:
         near = Fit(within=self.within)
         gap = _between_bodies(subject, joint) if self.bodies else Gauge(subject.scene, joint, near).rest()
-        if gap < -CONTACT_MM or within(gap, self.mm):
+        if -CONTACT_MM <= gap < 0:
+            gap = 0.0  # the rounded numbers of a file let bodies that touch overlap by less than a contact
+        if gap < 0 or within(gap, self.mm):
             return gap
         plays = (_least_play(subject, joint, near, place) for place in _places(joint))
         return max((play for play in plays if play is not None), default=gap)

@@ -15,6 +15,7 @@ from pydantic import TypeAdapter
 
 from articad import examples
 from articad.assembly import Assembly
+from articad.certificates.fits import CONTACT_MM
 from articad.connectors import SE3
 from articad.geometry import Part, box, cylinder
 from articad.kinematics.joints import Coupling, Joint, JointLimits
@@ -260,6 +261,18 @@ def test_a_part_that_sits_in_its_shoulder_has_no_gap() -> None:
     subject = Subject(Assembly.from_parts("hinge", parts=parts, joints=[hung], ground="pin"))
 
     assert not form({"kind": "gap", "joint": {"type": "revolute"}, "mm": [0.1, 0.3]}).judge(subject).ok
+
+
+@pytest.mark.parametrize("overlap", [-0.3 * CONTACT_MM, 0.0, 0.3 * CONTACT_MM])
+def test_bodies_that_touch_have_no_gap_whatever_a_file_rounds(overlap: float) -> None:
+    """An eye with much play lies on its shoulder."""
+    pin = m3.Manifold.cylinder(62, 8, 8, 64) + m3.Manifold.cylinder(16, 15, 15, 64).translate([0, 0, -16 + overlap])
+    eye = m3.Manifold.cylinder(40, 15, 15, 64) - m3.Manifold.cylinder(100, 9, 9, 64, center=True)
+    parts = [Part.from_mesh(name, manifold_mesh(solid)) for name, solid in (("pin", pin), ("eye", eye))]
+    hung = joint("hung", "revolute", ("pin", at(0)), ("eye", at(0)), limits=[(-1.0, 1.0)])
+    subject = Subject(Assembly.from_parts("hinge", parts=parts, joints=[hung], ground="pin"))
+
+    assert form({"kind": "gap", "joint": {"type": "revolute"}, "mm": [0, 0.5]}).judge(subject).ok
 
 
 @pytest.mark.parametrize("kind", ["screw", "slider"])
