@@ -21,12 +21,14 @@ NEAR_WALL: Final = 0.9  # of the radius of a hole
 SAME_ROUND: Final = 0.005  # of a diameter: a pin and its bore are told apart
 PARALLEL: Final = 1e-6  # sine of the angle below which two axes have no crossing
 LEAN: Final = 0.996  # cosine of the 5° by which an axis may lean from the one asked for
+BROKEN_EDGE: Final = 1.0  # mm of a round's length that a chamfer or a fillet may take at either end
+BROKEN_SHARE: Final = 0.1  # of the length, at most
 
 
 class _Rounds(Check):
     """A number of cylindrical faces of one diameter, in all parts together, at rest.
 
-    `length` is along the axis, `axis` in the frame of the whole, `pitch` the distance of each axis from the nearest parallel one of them,
+    `length` is along the axis, with the edges at both ends, which may be broken by 1 mm or a tenth of it; `axis` is in the frame of the whole, `pitch` the distance of each axis from the nearest parallel one of them,
     `circle` the diameter of the circle on which all axes lie. `apart` is a direction in the frame of the whole and the distances, one after
     the other, of the levels on which the axes lie along it; `above` the height of the axes above the lowest point of the whole.
     """
@@ -110,7 +112,12 @@ class _Rounds(Check):
             return False
         if self.axis is not None and abs(float(found.axis @ np.array(self.axis))) < LEAN * float(np.linalg.norm(self.axis)):
             return False
-        return self.length is None or within(found.length, self.length)
+        return self.length is None or within(found.length, (shortened(self.length[0]), self.length[1]))
+
+
+def shortened(mm: float) -> float:
+    """Return how short a round may be that is so long with sharp edges: they may be chamfered or rounded at both of its ends [mm]."""
+    return mm - 2 * min(BROKEN_EDGE, BROKEN_SHARE * mm)
 
 
 class Holes(_Rounds):

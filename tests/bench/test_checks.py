@@ -428,6 +428,18 @@ def test_a_board_lies_as_high_as_the_text_says_and_has_no_window(window: float, 
     assert form({"kind": "part_size", "mm": [700, 300, 18], "number": [1, 1]}).judge(subject).ok
 
 
+@pytest.mark.parametrize(("broken", "fits"), [(0.0, True), (0.9, True), (1.5, False)])
+def test_edges_of_a_hole_may_be_broken(broken: float, fits: bool) -> None:
+    """A bore of 16 mm through a disc 30 mm thick, chamfered at both mouths."""
+    disc = m3.Manifold.cylinder(30, 20, 20, 64) - m3.Manifold.cylinder(90, 8, 8, 64, center=True)
+    if broken:
+        mouth = m3.Manifold.cylinder(broken, 8, 8 + broken, 64)
+        disc = disc - mouth.translate([0, 0, 30 - broken]) - mouth.mirror([0, 0, 1]).translate([0, 0, broken])
+    subject = Subject(Assembly.from_parts("disc", parts=[Part.from_mesh("disc", manifold_mesh(disc))], joints=[], ground="disc"))
+
+    assert form({"kind": "holes", "diameter": 16, "number": [1, 1], "length": [29.5, 30.5]}).judge(subject).ok is fits
+
+
 @pytest.mark.parametrize(("height", "fits"), [(20.0, True), (60.0, False)])
 def test_a_hole_lies_as_high_as_the_text_says(height: float, fits: bool) -> None:
     bore = m3.Manifold.cylinder(30, 8, 8, 64, center=True).rotate((90, 0, 0)).translate((0, 0, height - 50))
