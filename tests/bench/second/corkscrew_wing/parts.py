@@ -32,11 +32,12 @@ def spindle(spindle_d, spindle_low, handle_z, stem_d, stem_play, gap=0.2, rack_l
     return shape
 
 
-def handle(handle_z, top, spindle_low, stem_d, grip=70, wide=13, worm=44, wire=2.2):
-    """Bar above the origin, stem and worm below."""
-    shape = Box(grip, wide, top - handle_z, align=UP) + Cylinder(stem_d / 2, handle_z - spindle_low + 2, align=DOWN)
-    low, radius = spindle_low - handle_z - worm, stem_d / 2 - wire / 2
-    path = Helix(pitch=9, height=worm, radius=radius, center=(0, 0, low))
+def handle(handle_z, top, spindle_low, stem_d, grip=70, wide=13, worm=42, core_d=3.6, wire=2.4, worm_r=1.7):
+    """Bar above the origin, the stem below; at its end a gimlet: a pointed core with a helical thread."""
+    end = spindle_low - handle_z - 2
+    shape = Box(grip, wide, top - handle_z, align=UP) + Cylinder(stem_d / 2, -end, align=DOWN)
+    shape += Pos(Z=end - worm) * Cylinder(core_d / 2, worm + 1, align=UP) + Pos(Z=end - worm - 5) * Cone(0.2, core_d / 2, 5, align=UP)
+    path = Helix(pitch=8, height=worm - 2, radius=worm_r, center=(0, 0, end - worm + 3))
     start = Plane(origin=path @ 0, z_dir=path % 0)
     return shape + sweep(start * Circle(wire / 2), path=path, is_frenet=True)
 
