@@ -23,7 +23,8 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.geometry.shapes import box
 from articad.importers.reading import Folder
-from articad.kernels.step_assembly import _parts
+from articad.importers.step import read_step
+from articad.kernels.step_assembly import StepPart, StepReader, _parts
 from articad.kinematics import declare
 from articad.plan.resolve import Waiver
 from tests.assemblies import all_joint_kinds
@@ -214,6 +215,28 @@ def test_step_overlap_floating_names_and_surfaces(tmp_path: Path) -> None:
     assert loose.value == pytest.approx(40.0)
     assert (name.code, name.value) == ("W_AUDIT_UNNAMED", 1)
     assert sheet.codes == ("E_AUDIT_NOT_SOLID",)
+
+
+def test_a_solid_whose_mesh_has_gaps_is_said_not_to_be_checked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """OpenCASCADE meshes some valid solids with gaps, such as a helical sweep that touches a cylinder along a line. No small one is known."""
+    read = StepReader.read_assembly
+
+    def opened(self: StepReader, path: Path, *, deflection: float = 0.05) -> tuple[StepPart, ...]:
+        return tuple(
+            replace(part, mesh=TriMesh(part.mesh.vertices, part.mesh.triangles[1:]))
+            if part.name == "leg" and part.mesh is not None
+            else part
+            for part in read(self, path, deflection=deflection)
+        )
+
+    monkeypatch.setattr(StepReader, "read_assembly", opened)
+    file = step_file(tmp_path, TABLE | {"leg": ((10.0, 10.0, 40.0), (0.0, 0.0, 23.0))})  # they overlap
+
+    undone = audit_file(file, QUICK).undone
+    (finding,) = read_step(file).findings
+
+    assert any("leg" in line and "3" in line and "overlap" in line for line in undone)
+    assert (finding.code, finding.where.split("/")[-1]) == ("W_IMPORT_DROPPED", "leg")
 
 
 def test_a_step_file_that_is_none_is_told(tmp_path: Path) -> None:
