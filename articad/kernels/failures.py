@@ -99,7 +99,7 @@ def _raised(part: str, script: str, error: Json) -> BuildError:
         return _error(
             "E_SCRIPT_FORBIDDEN", part, script, f"The script did something that a part script must not do: {what}", _ALONE, frames
         )
-    return _error("E_SCRIPT_ERROR", part, script, what, "Correct this line.", frames)
+    return _error("E_SCRIPT_ERROR", part, script, what, "Correct this line." if frames else "Correct the script or its dimensions.", frames)
 
 
 def _no_build(part: str, script: str, problems: list[str]) -> BuildError:

@@ -17,6 +17,19 @@ THROUGH: Final = 1e4  # mm to both sides of the connector
 """Half the length of a cutter that goes through the whole part."""
 BEYOND: Final = 0.5
 """How far the cutter of a groove stands out of its shaft [mm]."""
+_NEEDED: Final = (
+    ("pin", "length", "span", "tail"),
+    ("bar_x", "bar_y"),
+    ("bar_x", "length"),
+    ("gap", "reach"),
+    ("span", "pin"),
+    ("head", "thick"),
+    ("tail", "pin"),
+    ("groove", "shaft"),
+    ("groove", "width"),
+    ("slot_x", "slot_y"),
+)
+"""Ends of the names of dimensions, each with those of which one has to be there as well."""
 
 
 def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
@@ -29,6 +42,8 @@ def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
     import build123d as cad  # noqa: PLC0415 - a traced run replaces the module
 
     sizes = dict(part.dimensions)
+    for name in part.connectors:
+        _require_complete(sizes, name)
     places = {name: cad.Plane(frame.o, x_dir=frame.x, z_dir=frame.z) for name, frame in part.connectors.items()}
     for name, place in places.items():  # first, so that no fork loses its pin
         if f"{name}_gap" in sizes and shape is not None:
@@ -40,6 +55,21 @@ def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
         for cutter in _outer(cad, sizes, name):
             shape = shape - place * cutter
     return shape, part.connectors
+
+
+def _require_complete(sizes: Any, name: str) -> None:
+    """Check that what makes a feature at a connector is not a dimension alone that only happens to be named after it.
+
+    Raises:
+        ValueError: If another dimension is missing that the feature needs.
+    """
+    for end, *needed in _NEEDED:
+        if f"{name}_{end}" in sizes and not any(f"{name}_{other}" in sizes for other in needed):
+            others = " or ".join(f"{name}_{other}" for other in needed)
+            raise ValueError(
+                f"the dimension {name}_{end} is named after the connector {name}, so it makes a feature there, which needs {others}, too: "
+                "state that, or rename the dimension"
+            )
 
 
 class _Ends(NamedTuple):

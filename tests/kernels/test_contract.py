@@ -201,6 +201,20 @@ def test_a_feature_of_a_standard_joint_without_effect_is_told_with_its_joint(bui
         assert not any("shaft" in one.where for one in found)
 
 
+@pytest.mark.parametrize(
+    ("stated", "missing"), [("gap", "reach"), ("pin", "length"), ("span", "pin"), ("bar_x", "bar_y"), ("groove", "shaft")]
+)
+def test_a_dimension_that_happens_to_be_named_after_a_connector_says_what_it_lacks(build: Build, stated: str, missing: str) -> None:
+    """The connectors of a short plan are named after its joints: a part with a flag has the dimension flag_gap easily."""
+    with pytest.raises(BuildError) as raised:
+        build("return part.made(Box(10, 10, 10))", dimensions={f"flag_{stated}": 3.0}, connectors={"flag": frame()})
+    (finding,) = raised.value.findings
+
+    assert f"the dimension flag_{stated} is named after the connector flag" in finding.message
+    assert f"flag_{missing}" in finding.message
+    assert "rename the dimension" in finding.message
+
+
 @pytest.mark.parametrize("read", ["d['widht']", "d.widht", "part.dimensions['widht']"])
 def test_a_misspelled_dimension_is_told_with_the_nearest_one(build: Build, read: str) -> None:
     with pytest.raises(BuildError) as raised:
