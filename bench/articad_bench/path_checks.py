@@ -18,6 +18,7 @@ PATH: Final = 121  # values of a driver at which a path is measured
 SPEEDS: Final = 7  # values of a driver at which speeds are compared
 STILL: Final = 1e-6  # rad per rad or mm of the driver: slower does not turn
 SUNK_MM: Final = 0.5  # by which what rolls or lies on the floor may come below it
+SAME_PLACE: Final = 1e-6  # share of a path's extent by which the ends of a closed one may lie apart
 LEVEL_RAD: Final = math.radians(0.1)  # by which what does not turn may turn
 
 
@@ -33,7 +34,7 @@ class Straight(Check):
         return f"a joint's centre runs straight over {in_words(self.mm)} mm, within {self.off:g} mm"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        best = max((_straight(path, self.off) for path in _paths(subject)), default=0.0)
+        best = max((_straight(_endless(path), self.off) for path in _paths(subject)), default=0.0)
         return within(best, self.mm), f"{best:.4g} mm"
 
 
@@ -158,6 +159,12 @@ def _paths(subject: Subject) -> Iterator[FloatArray]:
         for joint in assembly.joints:
             if subject.rigid[joint.parent] not in guided and subject.rigid[joint.child] not in guided:
                 yield (poses[:, rows[joint.child]] @ joint.T_child_connector).translation
+
+
+def _endless(path: FloatArray) -> FloatArray:
+    """Return a path twice, one behind the other, if its ends meet: a crank's may begin anywhere, also in the middle of what is straight."""
+    meet = float(np.linalg.norm(path[-1] - path[0])) <= SAME_PLACE * _farthest(path)
+    return np.concatenate([path, path[1:]]) if meet else path
 
 
 def _straight(path: FloatArray, off: float) -> float:

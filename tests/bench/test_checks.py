@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 import manifold3d as m3
+import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
@@ -21,6 +22,7 @@ from articad.geometry import Part, box, cylinder
 from articad.kinematics.joints import Coupling, Joint, JointLimits
 from articad.plan.schema import AssemblyPlan
 from articad_bench.checks import AnyCheck, Check
+from articad_bench.path_checks import _endless, _straight
 from articad_bench.reference import reference
 from articad_bench.spacing_checks import spacings
 from articad_bench.subject import Subject
@@ -426,6 +428,18 @@ def test_a_board_lies_as_high_as_the_text_says_and_has_no_window(window: float, 
 
     assert form({"kind": "part_size", "mm": [700, 300, 18], "number": [1, 1], "above": [59, 61], "fill": 0.8}).judge(subject).ok is fits
     assert form({"kind": "part_size", "mm": [700, 300, 18], "number": [1, 1]}).judge(subject).ok
+
+
+@pytest.mark.parametrize("begun", [0, 20, 60, 110])
+def test_a_closed_path_runs_as_straight_wherever_it_begins(begun: int) -> None:
+    """A half circle over its chord of 100 mm, from the middle of the chord or elsewhere."""
+    chord = np.linspace([-50, 0, 0], [50, 0, 0], 61)
+    turn = np.linspace(0, math.pi, 61)
+    once = np.concatenate([chord[:-1], 50 * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)[:-1]])
+    path = np.roll(once, -begun, axis=0)
+
+    assert _straight(_endless(np.concatenate([path, path[:1]])), 0.01) == pytest.approx(100, abs=2)
+    assert _straight(_endless(np.linspace([0, 0, 0], [80, 0, 0], 41)), 0.01) == pytest.approx(80)
 
 
 @pytest.mark.parametrize(("broken", "fits"), [(0.0, True), (0.9, True), (1.5, False)])
