@@ -372,9 +372,6 @@ def test_the_sweep_leaves_what_is_in_use_or_not_ours(tmp_path: Path) -> None:
 
 WRITER = """
 import sys
-import tempfile
-import threading
-import time
 from pathlib import Path
 from articad.processes import scratch
 target = Path(sys.argv[1])

@@ -27,22 +27,21 @@ def audit_step(path: Path) -> tuple[Declared, list[Finding], list[str]]:
     parts = StepReader().read_assembly(path, deflection=DEFLECTION_MM)
     links = tuple(DeclaredLink(part.name, part.where, None, (DeclaredShape("visual", "mesh", part.where, part.mesh),)) for part in parts)
     declared = Declared("step", path.stem, links, (), states_inertia=False, states_collision=False)
-    sound = {part.name: part for part in parts if part.valid and part.mesh is not None}
-    solids = {name: part for name, part in sound.items() if part.mesh is not None and part.mesh.is_closed}
+    meshes = {part.name: part.mesh for part in parts if part.valid and part.mesh is not None and not part.gaps}
     findings = [*_not_solid(parts), *_unnamed(parts)]
-    if len(solids) > 1:
-        poses = dict.fromkeys(solids, SE3.identity())
-        meshes = {name: part.mesh for name, part in solids.items() if part.mesh is not None}
+    if len(meshes) > 1:
+        poses = dict.fromkeys(meshes, SE3.identity())
         largest = max(meshes, key=lambda name: float(np.ptp(meshes[name].bounds, axis=0).prod()))
         findings += check_pose(meshes, poses, joints=(), deflection=DEFLECTION_MM, ground=largest).findings
-    return declared, findings, ["motion: STEP holds no joints", *_unmeshed([part for name, part in sound.items() if name not in solids])]
+    return declared, findings, ["motion: STEP holds no joints", *_unmeshed(parts)]
 
 
 def _unmeshed(parts: Sequence[StepPart]) -> Iterator[str]:
-    """Yield what is not checked of solids whose meshes have gaps, however finely the kernel meshes them."""
-    if parts:
-        gaps = ", ".join(f"{part.name} {part.mesh.open_edges}" for part in parts if part.mesh is not None)
-        yield f"overlap and contact of {listed([part.name for part in parts])}: the kernel's meshes of these solids are not closed (open edges: {gaps})"
+    """Yield what is not checked of solids whose meshes have gaps."""
+    found = [part for part in parts if part.gaps]
+    if found:
+        gaps = ", ".join(f"{part.name} {part.gaps}" for part in found)
+        yield f"overlap and contact of {listed([part.name for part in found])}: the kernel's meshes of these solids are not closed (open edges: {gaps})"
 
 
 def _not_solid(parts: tuple[StepPart, ...]) -> Iterator[Finding]:

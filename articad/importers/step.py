@@ -51,12 +51,12 @@ def read_step(path: str | Path, *, root: str | Path | None = None, deflection: f
         Finding(
             code="W_IMPORT_DROPPED",
             where=part.where,
-            message=f"{part.name} is a solid, but the kernel's mesh of it has {part.mesh.open_edges} open edges; it is read as a surface, "
+            message=f"{part.name} is a solid, but the kernel's mesh of it has {part.gaps} open edges; it is read as a surface, "
             "without volume and mass.",
             hint="Rebuild it in CAD without surfaces that touch along a line, or read it with another deflection.",
         )
         for part in read
-        if part.name in parts and part.mesh is not None and not part.mesh.is_closed
+        if part.gaps
     ]
     ground = max(parts, key=lambda name: _size(parts[name]))
     joints = [_fixed(ground, name) for name in parts if name != ground]

@@ -38,6 +38,9 @@ def made(shape: Any, part: SimpleNamespace) -> tuple[Any, Any]:
     Args:
         shape: build123d's shape, in the part's frame; None for a part that is made of features alone, such as a pin.
         part: What the script was given.
+
+    Raises:
+        ValueError: If a feature lacks a dimension.
     """
     import build123d as cad  # noqa: PLC0415 - a traced run replaces the module
 

@@ -45,6 +45,13 @@ class StepPart:
     loose: bool
     faces: int
 
+    @property
+    def gaps(self) -> int:
+        """Number of open edges of a valid solid's mesh: the kernel meshes some with gaps, however finely; 0 of all other parts."""
+        if not self.valid or self.mesh is None or self.mesh.is_closed:
+            return 0
+        return self.mesh.open_edges
+
 
 class StepReader(Build123dKernel):
     """Reads STEP assemblies in the confined worker."""

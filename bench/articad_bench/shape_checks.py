@@ -28,8 +28,9 @@ BROKEN_SHARE: Final = 0.1  # of the length, at most
 class _Rounds(Check):
     """A number of cylindrical faces of one diameter, in all parts together, at rest.
 
-    `length` is along the axis, with the edges at both ends, which may be broken by 1 mm or a tenth of it; `axis` is in the frame of the whole, `pitch` the distance of each axis from the nearest parallel one of them,
-    `circle` the diameter of the circle on which all axes lie. `apart` is a direction in the frame of the whole and the distances, one after
+    `length` is along the axis, with the edges at both ends, which may be broken by 1 mm or a tenth of it; `axis` is in the frame of the
+    whole, `pitch` the distance of each axis from the nearest parallel one of them, `circle` the diameter of the circle on which all axes
+    lie. `apart` is a direction in the frame of the whole and the distances, one after
     the other, of the levels on which the axes lie along it; `above` the height of the axes above the lowest point of the whole.
     """
 
@@ -112,10 +113,10 @@ class _Rounds(Check):
             return False
         if self.axis is not None and abs(float(found.axis @ np.array(self.axis))) < LEAN * float(np.linalg.norm(self.axis)):
             return False
-        return self.length is None or within(found.length, (shortened(self.length[0]), self.length[1]))
+        return self.length is None or within(found.length, (_shortened(self.length[0]), self.length[1]))
 
 
-def shortened(mm: float) -> float:
+def _shortened(mm: float) -> float:
     """Return how short a round may be that is so long with sharp edges: they may be chamfered or rounded at both of its ends [mm]."""
     return mm - 2 * min(BROKEN_EDGE, BROKEN_SHARE * mm)
 
