@@ -28,6 +28,7 @@ from articad.export.freecad_content import PROPERTY, Content, content_of, unpack
 from articad.findings import Finding, Findings
 from articad.geometry.mass import MassProperties
 from articad.geometry.part import DEFAULT_COLOR, Part, Shape, Solid
+from articad.importers.driving import driven
 from articad.importers.freecad_constraints import CONSTRAINTS, Constraint, merged, planar_faces
 from articad.importers.freecad_couplings import COUPLINGS, PartMotions, Stated, coupling_of, threaded
 from articad.importers.freecad_document import IDENTITY, FreeCADObject, LinkedDocuments
@@ -586,9 +587,10 @@ class _Model:
                 ground=self.ground,
                 T_ground=self.assembly.placement @ self.poses[self.ground],
             )
+            mechanism = driven(made.mechanism)
         except ArticadError as error:
             raise unreadable(self.path, self.assembly.name, f"It is not a valid mechanism: {error.message}") from error
-        return replace(made, findings=Findings([*self.findings, *self.apart(joints)]), foreign=True)
+        return replace(made, mechanism=mechanism, findings=Findings([*self.findings, *self.apart(joints)]), foreign=True)
 
     def joined(self, joints: list[Joint], rows: Iterable[tuple[FreeCADObject, str, Joint | None]]) -> tuple[list[Joint], list[Coupling]]:
         """Return joints together with more joints of the document, as `joints` yields them, and the couplings among these.

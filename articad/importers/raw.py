@@ -7,7 +7,7 @@ Links keep their own frames, so that poses can be compared with other readers. A
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,7 @@ from articad.errors import ArticadError
 from articad.findings import Finding, Findings
 from articad.geometry.mass import MassProperties
 from articad.geometry.part import DEFAULT_COLOR, Part, Shape
+from articad.importers.driving import driven
 from articad.importers.reading import LARGEST_MM, MAX_LINKS, unreadable
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
@@ -184,8 +185,7 @@ def assemble(model: RawModel, path: Path) -> Assembly:
     try:
         mechanism = Mechanism(tuple(parts), model.ground, joints, couplings)
         mechanism.rest  # noqa: B018 - raises if loops do not close
-        if not mechanism.is_tree:
-            mechanism = _driven(mechanism, joints, model.driven)
+        mechanism = driven(mechanism, model.driven)
     except (ArticadError, np.linalg.LinAlgError) as error:
         raise unreadable(path, "", f"It is not a valid mechanism: {error}") from error
     kept_at = {item.where for item in model.kept if item.format == "mjcf"}  # what MJCF says there is kept, and reported where it is lost
@@ -195,21 +195,6 @@ def assemble(model: RawModel, path: Path) -> Assembly:
         if finding.code in _CHANGED and not finding.where.startswith("equality.") and finding.where not in kept_at
     ]
     return Assembly(model.name, mechanism, parts, findings=Findings(model.findings), foreign=True, kept=(*model.kept, *changed))
-
-
-def _driven(mechanism: Mechanism, joints: list[Joint], names: frozenset[str]) -> Mechanism:
-    """Return a mechanism whose drivers are these joints, without those that follow the others."""
-    names = frozenset(joint.name for joint in joints if joint.name in names and joint.type not in {JointType.FIXED, JointType.FREE})
-    while names:
-        marked = [replace(joint, driver=joint.name in names) for joint in joints]
-        mechanism = Mechanism(mechanism.parts, mechanism.ground, marked, mechanism.couplings)
-        refused = {joint.name for joint in mechanism.branch.refused}
-        if not refused:
-            break
-        names -= refused
-    else:
-        return Mechanism(mechanism.parts, mechanism.ground, joints, mechanism.couplings)
-    return mechanism
 
 
 def _consistent_ties(model: RawModel) -> list[RawTie]:
