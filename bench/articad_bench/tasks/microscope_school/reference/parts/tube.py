@@ -14,5 +14,6 @@ def build(part):
         + Pos(0, 0, 1) * Cylinder(d["nose_pin"], 15, align=HIGH)
     )
     body -= Pos(0, d["column_y"] - 5 - d["play"], 0) * Box(d["tongue"] + 2 * d["play"], 40, 200, align=FRONT)
+    body -= Pos(0, d["column_y"] - 5 - d["play"], 0) * Box(d["tongue"] + 8 + 2 * d["play"], 2.5 + 2 * d["play"], 200, align=FRONT)
 
     return body, {"focus": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}, "nosepiece": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
