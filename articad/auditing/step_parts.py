@@ -28,20 +28,29 @@ def audit_step(path: Path) -> tuple[Declared, list[Finding], list[str]]:
     links = tuple(DeclaredLink(part.name, part.where, None, (DeclaredShape("visual", "mesh", part.where, part.mesh),)) for part in parts)
     declared = Declared("step", path.stem, links, (), states_inertia=False, states_collision=False)
     meshes = {part.name: part.mesh for part in parts if part.valid and part.mesh is not None and not part.gaps}
-    findings = [*_not_solid(parts), *_unnamed(parts)]
+    findings = [*_not_solid(parts), *_unmeshed(parts), *_unnamed(parts)]
     if len(meshes) > 1:
         poses = dict.fromkeys(meshes, SE3.identity())
         largest = max(meshes, key=lambda name: float(np.ptp(meshes[name].bounds, axis=0).prod()))
         findings += check_pose(meshes, poses, joints=(), deflection=DEFLECTION_MM, ground=largest).findings
-    return declared, findings, ["motion: STEP holds no joints", *_unmeshed(parts)]
+    return declared, findings, ["motion: STEP holds no joints"]
 
 
-def _unmeshed(parts: Sequence[StepPart]) -> Iterator[str]:
+def _unmeshed(parts: Sequence[StepPart]) -> Iterator[Finding]:
     """Yield what is not checked of solids whose meshes have gaps."""
     found = [part for part in parts if part.gaps]
     if found:
         gaps = ", ".join(f"{part.name} {part.gaps}" for part in found)
-        yield f"overlap and contact of {listed([part.name for part in found])}: the kernel's meshes of these solids are not closed (open edges: {gaps})"
+        names = [part.name for part in found]
+        yield Finding(
+            code="W_AUDIT_NOT_CHECKED",
+            where="parts",
+            parts=tuple(names),
+            message=f"Overlap and contact of {listed(names)} are not checked: the kernel's meshes of these solids are not closed (open edges: {gaps}).",
+            hint="Rebuild them in CAD without surfaces that touch along a line.",
+            value=len(found),
+            limit=0,
+        )
 
 
 def _not_solid(parts: tuple[StepPart, ...]) -> Iterator[Finding]:

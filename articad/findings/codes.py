@@ -849,7 +849,12 @@ CODES: dict[str, Code] = {
     "W_AUDIT_PAIR_COLLISION": Code(
         "audit", None, "Two parts collide when two joints move together.", "Narrow one range, or add clearance."
     ),
-    "W_AUDIT_NOT_CHECKED": Code("audit", None, "The budget did not suffice for a check.", "Raise `--budget`."),
+    "W_AUDIT_NOT_CHECKED": Code(
+        "audit",
+        None,
+        "The budget did not suffice for a check, or the kernel's mesh of a solid is not closed.",
+        "Raise `--budget`; rebuild such a solid without surfaces that touch along a line.",
+    ),
     "W_AUDIT_ENGINE": Code("audit", None, "A simulator does not load the file.", "Correct what its message names."),
     "W_AUDIT_UNNAMED": Code(
         "audit", None, "Parts of a STEP file have no names of their own.", "Name the products before they are exported."
