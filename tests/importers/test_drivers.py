@@ -29,7 +29,7 @@ def pump(order: tuple[int, ...], crank: Any, *, seat: bool) -> Assembly:
     rod = block("rod", (80, 4, 4), big=SE3.identity(), small=SE3.from_translation((80, 0, 0)))
     slide = block("slide", (10, 10, 10), way=BACK, pin=SE3.identity())
     joints = [
-        declare.slider("push", base["way"], slide["way"], limits="endless", rest=10.0),
+        declare.slider("push", base["way"], slide["way"], limits=(-50.0, 50.0), rest=10.0),
         declare.revolute("wrist", slide["pin"], rod["small"], limits="endless"),
         declare.revolute("knee", rod["big"], wheel["pin"], limits="endless"),
         declare.revolute("turn", (carrier if seat else base)["crank"], wheel["hub"], limits=crank),
