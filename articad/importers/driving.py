@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
@@ -25,7 +26,7 @@ def driven(mechanism: Mechanism, stated: Iterable[str] = ()) -> Mechanism:
         return mechanism
     joints = mechanism.given_joints
     names = {joint.name for joint in joints if joint.type not in {JointType.FIXED, JointType.FREE}} & set(stated)
-    if not names and mechanism.loop_joints:
+    if not names and len(joints) >= len(mechanism.parts):
         names = _cranks(joints, mechanism.ground)
     while names:
         marked = [replace(joint, driver=joint.name in names) for joint in joints]
@@ -42,12 +43,16 @@ def driven(mechanism: Mechanism, stated: Iterable[str] = ()) -> Mechanism:
 
 def _cranks(joints: Sequence[Joint], ground: str) -> set[str]:
     """Return the joints that turn without end about something fixed to the ground; if there are none, the screws."""
-    still, before = {ground}, 0
-    while len(still) > before:
-        before = len(still)
-        for joint in joints:
-            if joint.type is JointType.FIXED and not still.isdisjoint((joint.parent, joint.child)):
-                still |= {joint.parent, joint.child}
+    near = defaultdict[str, list[str]](list)
+    for joint in joints:
+        if joint.type is JointType.FIXED:
+            near[joint.parent].append(joint.child)
+            near[joint.child].append(joint.parent)
+    still, todo = {ground}, [ground]
+    while todo:
+        fresh = set(near[todo.pop()]) - still
+        still |= fresh
+        todo += fresh
     turning = [joint for joint in joints if joint.type is JointType.REVOLUTE and not still.isdisjoint((joint.parent, joint.child))]
     endless = {joint.name for joint in turning if math.isinf(joint.limits.upper[0] - joint.limits.lower[0])}
     return endless or {joint.name for joint in joints if joint.type is JointType.SCREW}
