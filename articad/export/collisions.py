@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 from articad.connectors.se3 import SE3
 from articad.export.contacts import ContactSearch, poses_in_motion
 from articad.export.convex import Pieces, as_it_is, pieces_of, whole_hull
-from articad.export.gaps import TOUCHING_MM, gaps_at_rest
+from articad.export.gaps import TOUCHING_MM, gaps_at_rest, resting
 from articad.export.hulls import HullOverlap, Pair
 from articad.export.losses import Feature
 from articad.export.lowering import metres
@@ -183,6 +183,18 @@ def adjacent(assembly: Assembly, pair: Pair) -> str:
     if gap < TOUCHING_MM:
         return f"adjacent: {a} and {b} touch by design at joint {joints}: the gap at rest is {gap:.2g} mm"
     return f"not checked: joint {joints} connects {a} and {b}, whose solids are more than {TOUCHING_MM:g} mm apart at rest"
+
+
+def lying(assembly: Assembly) -> dict[Pair, str]:
+    """Return the pairs of parts that touch at rest and are fixed to those that a joint connects, and why they do not collide.
+
+    Their joint carries them. MuJoCo would press them against each other with the whole stiffness of the joint.
+    """
+    found = once(assembly, "resting", lambda: resting(assembly))
+    return {
+        (a, b): f"resting: {a} and {b} touch at rest, and joint {name} connects them or parts that are fixed to them"
+        for (a, b), name in found.items()
+    }
 
 
 def _names_of_joints(assembly: Assembly) -> defaultdict[frozenset[str], list[str]]:

@@ -13,7 +13,7 @@ from lxml import etree
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import has_limits, tied_points
-from articad.export.collisions import Collision, adjacent, collide, contact_feature, excuse, kind_of
+from articad.export.collisions import Collision, adjacent, collide, contact_feature, excuse, kind_of, lying
 from articad.export.features import rigid_with_ground
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
@@ -74,7 +74,8 @@ def write_mjcf(
 
     Body frames are joint frames, the one base body is the ground part, and every joint's value equals articad's in rad or m, so all zero
     is q = 0; the key `home` is the rest pose. Loops are closed by equality constraints between sites.
-    Parts that share a joint do not collide with each other, nor do parts whose solids overlap at rest; a comment gives the reason. With
+    Parts that share a joint do not collide with each other, nor do parts fixed to these that touch at rest, nor parts whose solids overlap
+    at rest; a comment gives the reason. With
     meshes or hulls for collision, pairs whose hulls meet where the solids do not are excluded as well.
 
     Args:
@@ -399,9 +400,11 @@ class _Writer:
         links = {link.part.name: link for link in self.model.links}
         mating = self._joined()
         reasons = {contact.parts: excuse(contact) for contact in contacts} | {pair: adjacent(self.assembly, pair) for pair in mating}
+        on_others = {} if self.assembly.foreign else lying(self.assembly)
+        reasons |= on_others
         if self.assembly.foreign:  # without shapes there are no contacts to exclude
             mating = [pair for pair in mating if all(links[part].collisions for part in pair)]
-        pairs = dict.fromkeys([*mating, *(contact.parts for contact in contacts)])
+        pairs = dict.fromkeys([*mating, *(contact.parts for contact in contacts), *on_others])
         if self.assembly.foreign:
             self.added += [Feature("contact.joined", "parts." + "+".join(pair)) for pair in mating]
         if pairs:
@@ -609,6 +612,7 @@ def _mesh_inertia(mesh: TriMesh) -> dict[str, str]:
 
 
 def _skipped(assembly: Assembly) -> set[Pair]:
-    """Return the pairs that do not collide in MuJoCo: those that share a joint, which are excluded, and those that never move apart."""
+    """Return the pairs that do not collide in MuJoCo: those that share a joint or lie on each other, and those that never move apart."""
     joints, order = assembly.mechanism.joints, assembly.mechanism.parts
-    return set(mating_pairs(joints, order)) | same_group_pairs(joints, order)
+    excluded = set() if assembly.foreign else set(lying(assembly))
+    return set(mating_pairs(joints, order)) | excluded | same_group_pairs(joints, order)

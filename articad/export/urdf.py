@@ -13,7 +13,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import ExportError
 from articad.export.bundle import Bundle
 from articad.export.closing import TiedPoint, tied_points
-from articad.export.collisions import Collision, adjacent, collide, contact_feature, excuse, kind_of
+from articad.export.collisions import Collision, adjacent, collide, contact_feature, excuse, kind_of, lying
 from articad.export.follow import STATES_MIMIC, as_stated, followers, leaders
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
@@ -293,10 +293,12 @@ def _semantics(assembly: Assembly, model: LoweredModel, keeper: _Keeper, contact
 
 
 def _disabled_pairs(assembly: Assembly, contacts: Iterable[HullOverlap]) -> Iterator[tuple[str, Pair, str]]:
-    """Yield the pairs of parts that need no collision check, with the claim: they share a joint, never move, or overlap."""
+    """Yield the pairs of parts that need no collision check, with the claim: they share a joint, rest on each other, never move, or overlap."""
     order, joints = assembly.mechanism.parts, assembly.mechanism.joints
     for pair in mating_pairs(joints, order):
         yield "Adjacent", pair, adjacent(assembly, pair)
+    for pair, why in ({} if assembly.foreign else lying(assembly)).items():
+        yield "Adjacent", pair, why
     for a, b in sorted(same_group_pairs(joints, order)):
         yield "Never", (a, b), f"never move: fixed joints hold {a} and {b} together"
     for contact in contacts:

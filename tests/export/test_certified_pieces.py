@@ -120,7 +120,7 @@ def test_every_pair_that_does_not_collide_cites_its_claim(name: str) -> None:
             assert isinstance(claim, etree._Comment), (name, row.attrib)
             pair = frozenset((names[row.get(first)], names[row.get(second)]))
             text = str(claim.text).strip()
-            assert text.startswith(("adjacent: ", "never move: ", "not checked: ")), text
+            assert text.startswith(("adjacent: ", "resting: ", "never move: ", "not checked: ")), text
             assert all(part in text for part in pair)
             if text.startswith("adjacent: "):
                 assert pair in joined

@@ -28,6 +28,7 @@ from articad.importers.urdf import read_urdf
 from articad.interference.body import Body
 from articad.kernels.cache import BuildCache
 from articad.kinematics import declare
+from articad.simulation.examine import simulate_assembly
 from tests.assemblies import STEEL, block, four_bar, frame
 
 WRITERS: dict[str, Any] = {"urdf": write_urdf, "mjcf": write_mjcf}
@@ -117,6 +118,39 @@ def test_only_parts_that_share_a_joint_are_excluded_and_the_joint_is_cited(cache
     assert {pair for _, pair in cited} == {("base", "rail"), ("base", "slider")}
     assert all(text.startswith("adjacent:") for text, _ in cited)
     assert "joint stand" in cited[0][0]
+
+
+def rail_on_bracket(gap: float, *, standing: bool) -> Assembly:
+    """A rail that turns about a pin which is fixed to a bracket, `gap` above the bracket; perhaps all of it on a turntable."""
+    table = block("table", (60, 60, 10), on=frame(at=(0, 0, 5)))
+    bracket = block("bracket", (40, 40, 10), foot=frame(at=(0, 0, -5)), top=frame(at=(0, 0, 5)))
+    pin = block("pin", (4, 4, 40), foot=frame(at=(0, 0, -20)))
+    rail = Part.from_mesh("rail", tube(3, 6, 10), density=STEEL, connectors={"bore": Connector("bore", SE3.identity())})
+    arm = block("arm", (100, 8, 10), bore=frame(at=(-56, 0, 0)))
+    far = Connector("up", SE3.from_translation((0, 0, -15 + gap)))
+    pin = replace(pin, connectors={**pin.connectors, "up": far})
+    joints = [
+        declare.fixed("stands", table["on"], bracket["foot"])
+        if standing
+        else declare.revolute("spin", table["on"], bracket["foot"], limits=(-1, 1)),
+        declare.fixed("held", bracket["top"], pin["foot"]),
+        declare.revolute("swing", pin["up"], rail["bore"], limits=(0.0, 3.0)),
+        declare.fixed("welded", rail["bore"], arm["bore"]),
+    ]
+    return Assembly.from_parts("rack", parts=[table, bracket, pin, rail, arm], joints=joints, ground="table")
+
+
+@pytest.mark.parametrize("standing", [True, False])
+@pytest.mark.parametrize(("gap", "resting"), [(0.0, True), (0.5, False)])
+def test_parts_that_rest_on_what_carries_their_joint_are_excluded(gap: float, resting: bool, standing: bool, cache: BuildCache) -> None:
+    assembly = rail_on_bracket(gap, standing=standing)
+    text = write_mjcf(assembly, cache=cache).files["rack.xml"].decode()
+    semantics = write_urdf(assembly, srdf=True, cache=cache).files["rack.srdf"].decode()
+
+    assert ('<exclude body1="bracket" body2="arm"/>' in text) == resting
+    assert ('link1="bracket" link2="arm"' in semantics) == resting
+    assert '<exclude body1="table" body2="arm"/>' not in text
+    assert simulate_assembly(assembly, "rack", engines=("mujoco",)).ok
 
 
 def lid_above_box(gap: float, wide: float = 20.0) -> Assembly:
