@@ -22,7 +22,7 @@ def build(part):
         ) * Cylinder(d["axle"], 40, align=LOW)
     for x in (-60, 60):
         body += Pos(x, 40, d["base"] - 1 + d["height"]) * Box(8, 14, 19, align=LOW)
-    body += Pos(0, 40, d["base"] + 10 + d["height"]) * Rot(Y=90) * Cylinder(d["hinge_pin"], 128)
+    body += Pos(0, 40, d["base"] + 10 + d["height"]) * Rot(Y=90) * Cylinder(d["hinge_pin"], 156)
 
     return body, {
         "book": {"o": (d["hinge_x"], 0, 0), "z": (0, 0, -1), "x": (1, 0, 0)},
