@@ -579,7 +579,7 @@ class Simulates(Check):
 
 
 class Unchanged(Check):
-    """After an edit, the number of parts whose shape is bit-identical to one from before, whatever their names.
+    """After an edit, the number of parts whose mesh is that of one from before, whatever their names and wherever they lie.
 
     Attributes:
         of: Whether parts are counted or bodies, that is, what is fixed together; a body is unchanged if all its parts are, so a crumb that stays
@@ -606,7 +606,7 @@ class Unchanged(Check):
         found: dict[str, list[str]] = {}
         for name in subject.shaped:
             if (body := subject.rigid[name]) != left_out:
-                found.setdefault(name if self.of.endswith("parts") else body, []).append(_digest(subject, name))
+                found.setdefault(name if self.of.endswith("parts") else body, []).append(subject.form(name))
         return Counter(tuple(sorted(shapes)) for shapes in found.values())
 
 
@@ -674,12 +674,6 @@ AnyCheck = Annotated[
     | Section,
     Field(discriminator="kind"),
 ]
-
-
-def _digest(subject: Subject, name: str) -> str:
-    mesh = subject.assembly.parts[name].mesh
-    assert mesh is not None
-    return mesh.digest
 
 
 def moved_shares(subject: Subject, joint: Joint) -> list[tuple[float, float]]:

@@ -46,7 +46,5 @@ def _places(subject: Subject, axis: FloatArray) -> dict[str, list[float]]:
     """Return where the parts of each shape lie along an axis, ascending."""
     found: dict[str, list[float]] = {}
     for name in subject.shaped:
-        mesh = subject.assembly.parts[name].mesh
-        assert mesh is not None
-        found.setdefault(mesh.digest, []).append(middle_along(subject, name, axis))
+        found.setdefault(subject.form(name), []).append(middle_along(subject, name, axis))
     return {shape: sorted(places) for shape, places in found.items()}

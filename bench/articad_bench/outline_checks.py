@@ -8,7 +8,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
-from scipy.ndimage import binary_dilation, binary_opening, distance_transform_edt
+from scipy.ndimage import binary_dilation, binary_opening, distance_transform_edt, label
 
 from articad.arrays import FloatArray
 from articad_bench.check import Check
@@ -92,7 +92,7 @@ def _difference(wanted: Outline, found: Outline) -> float:
     """Return how far the two lie apart, as a share of their diagonal: what is there, what is empty, and what is thin."""
     diagonal = float(np.hypot(*wanted.shape))
     reach = round(THIN * diagonal)
-    pair = [np.pad(each, 2 * reach + 1) for each in (wanted, found)]
+    pair = [np.pad(_without_slits(each, BESIDE * diagonal), 2 * reach + 1) for each in (wanted, found)]
     gap = np.ones((3, 3), dtype=np.bool_)  # a narrower gap may close where its sides fall into one cell
     apart = 0.0
     for here, there in (pair, pair[::-1]):
@@ -101,6 +101,16 @@ def _difference(wanted: Outline, found: Outline) -> float:
         ways = ((here, there), (binary_opening(~here, gap), ~there), (thin, also))
         apart = max(apart, *(_farthest(a, b) / diagonal for a, b in ways))
     return min(apart, 1.0)
+
+
+def _without_slits(outline: Outline, width: float) -> Outline:
+    """Return an outline without openings that are smaller than a square of this width [cells]: slits between eyes that turn on one pin."""
+    numbers, _ = label(~outline, np.ones((3, 3)))
+    areas = np.bincount(numbers.ravel())
+    rim = np.unique(np.concatenate([numbers[0], numbers[-1], numbers[:, 0], numbers[:, -1]]))
+    small = areas < width**2
+    small[[0, *rim]] = False
+    return np.asarray(outline | small[numbers])
 
 
 def _opened(outline: Outline, width: int) -> Outline:

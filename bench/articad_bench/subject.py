@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -30,6 +31,7 @@ from articad_bench.solids import boxes_by_faces
 WATER: Final = 1000.0  # kg/m³
 _TURNING_TOO: Final = frozenset({JointType.CYLINDRICAL, JointType.UNIVERSAL, JointType.PLANAR})
 _SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR})
+_SAME_DIGITS: Final = 6  # of mm
 _ASIDE: Final = {str(kind): {"x", "y"} for kind in JointType} | {
     str(JointType.BALL): {"x", "y", "z"},
     str(JointType.UNIVERSAL): {"x", "y", "z"},
@@ -157,6 +159,20 @@ class Subject:
             rows = [np.sort(np.ptp(turned, axis=0)), *boxes_by_faces(mesh)]
             self._boxes[part] = np.array(rows)
         return self._boxes[part]
+
+    def form(self, part: str) -> str:
+        """Return a digest of a part's mesh, wherever it lies in the part's frame: STEP files may hold a part where it stands in the whole."""
+        mesh = self.assembly.parts[part].mesh
+        assert mesh is not None
+        if part not in self._forms:
+            about = mesh.vertices - (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
+            rounded = np.round(about, _SAME_DIGITS) + 0.0  # no minus zeros
+            self._forms[part] = hashlib.sha256(rounded.tobytes() + mesh.triangles.tobytes()).hexdigest()
+        return self._forms[part]
+
+    @cached_property
+    def _forms(self) -> dict[str, str]:
+        return {}
 
     def of_size(self, mm: Sequence[float | None], tolerance: float) -> list[str]:
         """Return the parts that have these sides within a share of them, in any order; None stands for any length [mm]."""

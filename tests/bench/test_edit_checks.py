@@ -12,11 +12,16 @@ from tests.bench.test_checks import form
 from tests.kinematics.linkages import at, joint
 
 
-def rod(*nuts: float, length: float = 180.0) -> Assembly:
-    """A rod along x with a cap at 0 and nuts, all alike."""
-    bodies = [("rod", box(length, 5, 5)), ("cap", box(20, 30, 30)), *((f"nut_{i}", box(10, 20, 20)) for i, _ in enumerate(nuts))]
+def rod(*nuts: float, length: float = 180.0, in_place: bool = False) -> Assembly:
+    """A rod along x with a cap at 0 and nuts, all alike; perhaps with the frames of the nuts in the middle, as STEP files have them."""
+    own = [x if in_place else 0.0 for x in nuts]
+    bodies = [
+        ("rod", box(length, 5, 5)),
+        ("cap", box(20, 30, 30)),
+        *((f"nut_{i}", placed(box(10, 20, 20), x, 0, 0)) for i, x in enumerate(own)),
+    ]
     fixed = [joint("cap", "fixed", ("rod", at(0)), ("cap", at(0)))]
-    fixed += [joint(f"nut_{i}", "fixed", ("rod", at(x)), (f"nut_{i}", at(0))) for i, x in enumerate(nuts)]
+    fixed += [joint(f"nut_{i}", "fixed", ("rod", at(x)), (f"nut_{i}", at(own[i]))) for i, x in enumerate(nuts)]
     return Assembly.from_parts("rod", parts=[Part.from_mesh(n, m, density=1000) for n, m in bodies], joints=fixed, ground="rod")
 
 
@@ -37,6 +42,15 @@ def test_how_much_farther_apart_what_is_unchanged_lies(after: Assembly, mm: list
 
     assert check.judge(Subject(after, before=rod(130))).ok is expected
     assert not check.judge(Subject(after)).ok
+
+
+@pytest.mark.parametrize("in_place", [False, True])
+def test_a_part_that_lies_elsewhere_in_its_own_frame_is_unchanged(in_place: bool) -> None:
+    before, after = rod(130.1, in_place=in_place), rod(145.4, in_place=in_place)
+    rows = [{"kind": "unchanged", "number": [3, 3]}, {"kind": "shifted", "axis": [1, 0, 0], "mm": [15.2, 15.4], "number": [2, 2]}]
+
+    assert all(form(row).judge(Subject(after, before=before)).ok for row in rows)
+    assert form({"kind": "unchanged", "number": [2, 2]}).judge(Subject(rod(145.4, length=181, in_place=in_place), before=before)).ok
 
 
 def bearing(cap_gap: float) -> Subject:

@@ -47,6 +47,22 @@ def read_by_eye(mesh: TriMesh, seed: int) -> TriMesh:
     return TriMesh(vertices, mesh.triangles)
 
 
+def eyes(slit: float, high: float = 6.0) -> TriMesh:
+    """Two cheeks on a foot, 40 mm wide and high, with an eye between them: one sees through a slit on either side of it, 2 mm below the pin."""
+    side = (40 - 12 - 2 * slit) / 2
+    rows = [((60, 40, 10), (0, 0, 5)), ((60, 40, 30 - high), (0, 0, 25 + high / 2)), ((60, 12, 30), (0, 0, 25))]
+    rows += [((60, side, 30), (0, sign * (20 - side / 2), 25)) for sign in (-1, 1)]
+    return merged([box(*sides).transformed(SE3.from_translation(np.array(middle, dtype=np.float64))) for sides, middle in rows])
+
+
+@pytest.mark.parametrize(("slit", "high", "passes"), [(0.5, 6, True), (2.0, 4, True), (4.0, 20, False)])
+def test_slits_that_one_sees_through_may_be_closed_and_windows_not(slit: float, high: float, passes: bool) -> None:
+    closed, open_ = subject(eyes(0.0, high)), subject(eyes(slit, high))
+
+    assert outlined(closed).judge(open_).ok is passes
+    assert outlined(open_).judge(closed).ok is passes
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_who_reads_photos_within_a_tenth_passes_turned_or_not(seed: int) -> None:
     check = outlined(subject(cabinet()))
