@@ -173,6 +173,8 @@ class NotBoundError(ArticadError):
 def bound_task(task: Task, subject: Subject, after: Sequence[Subject] = ()) -> Task:
     """Return a task with its bindings in place of those that it has; an edit restates those that do not hold of the edited product, or of its mirror image as well.
 
+    It also restates outlines that lie as far apart as a third of what is allowed: who makes the edit must have the same margin.
+
     Args:
         task: The task.
         subject: Its reference.
@@ -188,6 +190,7 @@ def bound_task(task: Task, subject: Subject, after: Sequence[Subject] = ()) -> T
     for edit, checks, product in zip(task.edits, task.stages[1:], after, strict=True):
         kinds = {check.kind for check in held if not check.judge(product).ok}
         kinds |= {check.kind for check in held if isinstance(check, Handed) and not check.refuses_mirror_image(product)}
+        kinds |= {check.kind for check in held if isinstance(check, Outlined) and check.apart(product) > check.beside / 3}
         again = [check for check in bindings(task.model_copy(update={"checks": checks}), product) if check.kind in kinds]
         _all_hold(again, product)
         held = [*(check for check in held if check.kind not in {each.kind for each in again}), *again]

@@ -47,14 +47,19 @@ class Outlined(Check):
     def measured(self, subject: Subject) -> tuple[bool, str]:
         if not subject.shaped:
             return False, "nothing has a shape"
+        best = self.apart(subject, enough=self.beside)
+        return best <= self.beside, f"{100 * best:.2g} %"
+
+    def apart(self, subject: Subject, enough: float = 0.0) -> float:
+        """Return how far the outlines lie apart, as a share of their diagonals; of the quarters, the first that is near enough, or the best."""
         wanted, best = [_unpacked(rows) for rows in self.seen], 1.0
         for turn in TURNS:
             corners = _corners(subject, turn)
             found = (_outline(corners, side, rows.shape) for side, rows in zip(SIDES, wanted, strict=True))
             best = min(best, max(_difference(a, b) for a, b in zip(wanted, found, strict=True)))
-            if best <= self.beside:
+            if best <= enough:
                 break
-        return best <= self.beside, f"{100 * best:.2g} %"
+        return best
 
 
 def outlined(subject: Subject) -> Outlined:
