@@ -399,9 +399,9 @@ class _Writer:
             return
         links = {link.part.name: link for link in self.model.links}
         mating = self._joined()
-        reasons = {contact.parts: excuse(contact) for contact in contacts} | {pair: adjacent(self.assembly, pair) for pair in mating}
         on_others = {} if self.assembly.foreign else lying(self.assembly)
-        reasons |= on_others
+        reasons = on_others | {contact.parts: excuse(contact) for contact in contacts}
+        reasons |= {pair: adjacent(self.assembly, pair) for pair in mating}
         if self.assembly.foreign:  # without shapes there are no contacts to exclude
             mating = [pair for pair in mating if all(links[part].collisions for part in pair)]
         pairs = dict.fromkeys([*mating, *(contact.parts for contact in contacts), *on_others])
@@ -612,7 +612,6 @@ def _mesh_inertia(mesh: TriMesh) -> dict[str, str]:
 
 
 def _skipped(assembly: Assembly) -> set[Pair]:
-    """Return the pairs that do not collide in MuJoCo: those that share a joint or lie on each other, and those that never move apart."""
+    """Return the pairs that do not collide in MuJoCo: those that share a joint, which are excluded, and those that never move apart."""
     joints, order = assembly.mechanism.joints, assembly.mechanism.parts
-    excluded = set() if assembly.foreign else set(lying(assembly))
-    return set(mating_pairs(joints, order)) | excluded | same_group_pairs(joints, order)
+    return set(mating_pairs(joints, order)) | same_group_pairs(joints, order)

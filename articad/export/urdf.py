@@ -297,11 +297,13 @@ def _disabled_pairs(assembly: Assembly, contacts: Iterable[HullOverlap]) -> Iter
     order, joints = assembly.mechanism.parts, assembly.mechanism.joints
     for pair in mating_pairs(joints, order):
         yield "Adjacent", pair, adjacent(assembly, pair)
+    overlapping = {contact.parts: contact for contact in contacts}
     for pair, why in ({} if assembly.foreign else lying(assembly)).items():
-        yield "Adjacent", pair, why
+        if pair not in overlapping:
+            yield "Adjacent", pair, why
     for a, b in sorted(same_group_pairs(joints, order)):
         yield "Never", (a, b), f"never move: fixed joints hold {a} and {b} together"
-    for contact in contacts:
+    for contact in overlapping.values():
         yield "Default", contact.parts, excuse(contact)
 
 
