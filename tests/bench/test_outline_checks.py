@@ -50,7 +50,11 @@ def read_by_eye(mesh: TriMesh, seed: int) -> TriMesh:
 def eyes(slit: float, high: float = 6.0) -> TriMesh:
     """Two cheeks on a foot, 40 mm wide and high, with an eye between them: one sees through a slit on either side of it, 2 mm below the pin."""
     side = (40 - 12 - 2 * slit) / 2
-    rows = [((60, 40, 10), (0, 0, 5)), ((60, 40, 30 - high), (0, 0, 25 + high / 2)), ((60, 12, 30), (0, 0, 25))]
+    rows: list[tuple[tuple[float, float, float], tuple[float, float, float]]] = [
+        ((60, 40, 10), (0, 0, 5)),
+        ((60, 40, 30 - high), (0, 0, 25 + high / 2)),
+        ((60, 12, 30), (0, 0, 25)),
+    ]
     rows += [((60, side, 30), (0, sign * (20 - side / 2), 25)) for sign in (-1, 1)]
     return merged([box(*sides).transformed(SE3.from_translation(np.array(middle, dtype=np.float64))) for sides, middle in rows])
 
