@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import Final
 
 import pytest
 
 from articad.connectors import SE3
 from articad.geometry import box
 from articad_bench.bindings import bindings, shows_hands
+from articad_bench.check import Check
+from articad_bench.outline_checks import Outlined
+from articad_bench.reference import references
 from articad_bench.subject import Subject
+from articad_bench.task import TASKS, Task, tasks_in
 from tests.bench.test_cheats import of, placed, task
 from tests.kinematics.linkages import at, joint
+
+
+def _outlines(checks: Sequence[Check]) -> list[Outlined]:
+    return [check for check in checks if isinstance(check, Outlined)]
 
 
 @pytest.mark.parametrize(
@@ -58,3 +69,14 @@ def test_what_faces_the_other_way_is_refused_where_words_say_which_way() -> None
 
     assert [check.judge(mug(side)).ok for side in (1, 0.95, -1)] == [True, True, False]
     assert [each.kind for each in bindings(task(prompt="A mug with a handle.", checks=[]), mug(1))] == ["matter"]
+
+
+EDITED: Final = [pytest.param(folder, task, id=task.name) for folder, task in tasks_in(TASKS) if task.edits and _outlines(task.checks)]
+
+
+@pytest.mark.slow
+@pytest.mark.soak  # builds 27 products before and after their edits
+@pytest.mark.parametrize(("folder", "task"), EDITED)
+def test_outlines_of_an_edited_product_leave_most_of_their_margin(folder: Path, task: Task) -> None:
+    for checks, product in zip(task.stages, references(folder, task), strict=True):
+        assert all(check.apart(Subject(product)) <= check.beside / 3 for check in _outlines(checks))
