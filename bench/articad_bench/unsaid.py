@@ -16,10 +16,10 @@ from articad_bench.stack_checks import Stack
 from articad_bench.task import Task
 
 Format = Literal["urdf", "mjcf", "step", "freecad"]
-Asked = Literal["motion", "loop", "cone", "force", "fit", "weight", "linear", "swing"]
+Asked = Literal["motion", "loop", "cone", "force", "fit", "weight", "linear", "swing", "plane"]
 """What a product has: joints that move, a closed loop, a ball whose cone is limited and whose twist has a range of its own, parts that are pressed
 or snapped together, declared fits, a mass that is asked for, joints coupled by other means than gears, belts, racks and screws,
-a universal joint whose angles are limited."""
+a universal joint whose angles are limited, a planar joint whose ways are limited."""
 
 MOTION: Final = frozenset(
     {
@@ -81,6 +81,7 @@ UNSAID: Final = (
     ),
     Unsaid("freecad", "cone", _OF_A_CONE, "FreeCAD limits no angle of a ball."),
     Unsaid("freecad", "swing", _OF_A_CONE | {"moves"}, "FreeCAD limits no angle of a universal joint."),
+    Unsaid("freecad", "plane", _OF_A_CONE | {"moves", "reaches"}, "FreeCAD limits no way of a planar joint."),
     Unsaid("freecad", "linear", MOTION, "FreeCAD couples joints by gears, belts, racks and screws alone."),
     Unsaid("freecad", "weight", frozenset({"mass", "weighs"}), "FreeCAD holds no densities but those of its own library."),
     Unsaid(
@@ -103,6 +104,8 @@ def asked_for(task: Task) -> set[Asked]:
             found.add("cone")
         if isinstance(check, Joints) and check.joint.type is JointType.UNIVERSAL and check.joint.span not in {None, "endless"}:
             found.add("swing")
+        if isinstance(check, Joints) and check.joint.type is JointType.PLANAR and check.joint.span not in {None, "endless"}:
+            found.add("plane")
         if isinstance(check, PutTogether) and check.force:
             found.add("force")
         if isinstance(check, Mass | Weighs):
