@@ -348,6 +348,12 @@ CODES: dict[str, Code] = {
     ),
     "E_NOT_ONE_SOLID": Code("build", "code", "The shape is not one solid.", "Make the bodies overlap or touch, and fuse them."),
     "E_INVALID_SOLID": Code("build", "code", "The solid is not valid.", "Avoid self-intersecting features and zero-thickness walls."),
+    "W_PART_STEP": Code(
+        "build",
+        "code",
+        "A solid is valid, but not once it is written as STEP.",
+        "Do not let a round face only touch another face: move one of them by 0.1 mm.",
+    ),
     "E_EMPTY_SOLID": Code("build", "code", "The solid has no volume.", "Check that cuts do not remove everything."),
     "E_ENVELOPE": Code("build", "code", "The solid's bounding box differs from the stated one by more than 2 %.", "Build the stated size."),
     "E_CONNECTOR_MISSING": Code(

@@ -74,6 +74,13 @@ def solid_findings(brief: Json, shape: Json) -> Iterator[Finding]:
     elif shape.get("intersects_itself") is None:
         message = "Whether the solid's faces cut each other could not be determined."
         yield _finding("I_BUILD_UNCHECKED", name, message, "Simplify swept, lofted and lettered features if overlap volumes seem wrong.")
+    if shape.get("valid") is True and shape.get("valid_in_step") is False:
+        yield _finding(
+            "W_PART_STEP",
+            name,
+            "The solid is valid here, but not once it is written as STEP: programs that read the file may drop or change it.",
+            "Do not let a round face only touch another face: move one of them, or change its radius, by 0.1 mm or more.",
+        )
     yield from _envelope_findings(name, brief.get("envelope_mm"), numbers(shape.get("bbox_mm"), 2, 3))
 
 

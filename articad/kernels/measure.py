@@ -105,7 +105,18 @@ def measure(
     mesh = tessellate(solid, deflection, angle)
     report["closed"] = is_closed(mesh.triangles)
     BRepTools.Clean_s(solid)
-    return Measured(report, {"npz": npz(mesh), "brep": _brep(solid), "step": step_file(solid, name)})
+    step = step_file(solid, name)
+    report["valid_in_step"] = report["valid"] and _is_one_solid(step)
+    return Measured(report, {"npz": npz(mesh), "brep": _brep(solid), "step": step})
+
+
+def _is_one_solid(step: bytes) -> bool:
+    """Return whether who reads a STEP file gets one valid solid: STEP states no tolerances of edges, and some valid solids need theirs."""
+    try:
+        solids = solids_of(read_shape("step", step))
+    except (ValueError, RuntimeError):
+        return False
+    return len(solids) == 1 and is_valid(solids[0])
 
 
 def pieces(shape: TopoDS_Shape, *, deflection: float, angle: float) -> Measured:

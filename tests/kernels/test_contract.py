@@ -125,6 +125,26 @@ def test_faces_that_cut_each_other_are_told(build: Build) -> None:
     assert "cut each other near" in finding.message
 
 
+def trunnion(eye: float, wide: float) -> str:
+    """A rod of 8 mm radius, chamfered at its foot, with an eye across its top, `wide` along x, and a pin through that."""
+    return (
+        "tail = Pos(0, 0, -585) * Cylinder(8, 585, align=(Align.CENTER, Align.CENTER, Align.MIN))\n"
+        f"body = chamfer(tail.edges().sort_by(Axis.Z)[0], 1) + Rot(0, 90, 0) * Cylinder({eye}, {wide})\n"
+        "return body + Rot(0, 90, 0) * Cylinder(3, 26.6), {}"
+    )
+
+
+@pytest.mark.parametrize(("eye", "wide", "kept"), [(8.0, 16.0, False), (7.0, 16.0, False), (7.0, 20.0, True), (8.5, 16.0, True)])
+def test_a_solid_that_step_does_not_keep_is_told(build: Build, eye: float, wide: float, kept: bool) -> None:
+    """The ends of the eye touch the rod's side: the kernel calls it valid with the tolerances of its edges, which STEP does not state."""
+    built = build(trunnion(eye, wide))
+
+    if kept:
+        assert built.findings == Findings()
+    else:
+        only(built.findings, "W_PART_STEP")
+
+
 @pytest.mark.skipif(not HAS_FONTS, reason="without fonts the kernel draws simpler letters, which it can judge")
 def test_faces_that_the_kernel_gives_up_on_are_told_as_unchecked(build: Build) -> None:
     found = build("return Box(20, 20, 4) + Pos(0, 0, 2) * extrude(Text('t', 10), 1), {}").findings
