@@ -45,6 +45,7 @@ PAIRS = {
     "W_MOTION_RANGE": "agents/test_ranges.py::test_drawers_that_open_a_tenth_as_far_as_the_analysis_says_are_asked_about_and_corrected",
     "W_RADIUS_MISTAKEN": "kernels/test_radii.py::test_twice_or_half_of_one_radius_is_named_and_is_gone_as_the_hint_says",
     "W_BORE_NARROW": "kernels/test_features.py::test_a_bore_like_a_needle_cannot_be_made",
+    "W_PART_STEP": "kernels/test_contract.py::test_a_solid_that_step_does_not_keep_is_told",
     "W_PART_SCALE": "kernels/test_seating.py::test_one_dimension_far_longer_than_the_part_is_the_plans_fault_and_several_are_the_scripts",
     "W_NOT_CARRIED": "support/test_support.py::test_a_shelf_beside_its_pegs_falls_and_is_named",
     "W_TIPS_OVER": "support/test_support.py::test_a_product_that_is_made_as_the_hint_says_tips_over_no_more",
