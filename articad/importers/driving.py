@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 
 from articad.errors import KinematicsError
+from articad.export.hulls import rigid_groups
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 
@@ -27,7 +27,7 @@ def driven(mechanism: Mechanism, stated: Iterable[str] = ()) -> Mechanism:
     joints = mechanism.given_joints
     names = {joint.name for joint in joints if joint.type not in {JointType.FIXED, JointType.FREE}} & set(stated)
     if not names and len(joints) >= len(mechanism.parts):
-        names = _cranks(joints, mechanism.ground)
+        names = _cranks(joints, mechanism.parts, mechanism.ground)
     while names:
         marked = [replace(joint, driver=joint.name in names) for joint in joints]
         made = Mechanism(mechanism.parts, mechanism.ground, marked, mechanism.couplings, mechanism.T_ground)
@@ -41,18 +41,9 @@ def driven(mechanism: Mechanism, stated: Iterable[str] = ()) -> Mechanism:
     return mechanism
 
 
-def _cranks(joints: Sequence[Joint], ground: str) -> set[str]:
+def _cranks(joints: tuple[Joint, ...], parts: tuple[str, ...], ground: str) -> set[str]:
     """Return the joints that turn without end about something fixed to the ground; if there are none, the screws."""
-    near = defaultdict[str, list[str]](list)
-    for joint in joints:
-        if joint.type is JointType.FIXED:
-            near[joint.parent].append(joint.child)
-            near[joint.child].append(joint.parent)
-    still, todo = {ground}, [ground]
-    while todo:
-        fresh = set(near[todo.pop()]) - still
-        still |= fresh
-        todo += fresh
-    turning = [joint for joint in joints if joint.type is JointType.REVOLUTE and not still.isdisjoint((joint.parent, joint.child))]
+    group = rigid_groups(joints, parts)
+    turning = [joint for joint in joints if joint.type is JointType.REVOLUTE and group[ground] in (group[joint.parent], group[joint.child])]
     endless = {joint.name for joint in turning if math.isinf(joint.limits.upper[0] - joint.limits.lower[0])}
     return endless or {joint.name for joint in joints if joint.type is JointType.SCREW}
