@@ -44,7 +44,8 @@ def resting(assembly: Assembly) -> dict[Pair, str]:
     """
     joints, order = assembly.mechanism.joints, assembly.mechanism.parts
     group, joined = rigid_groups(joints, order), set(mating_pairs(joints, order))
-    names = {frozenset((group[one.parent], group[one.child])): one.name for one in joints if one.type is not JointType.FREE}
+    moving = [one for one in joints if one.type is not JointType.FREE and group[one.parent] != group[one.child]]
+    names = {frozenset((group[one.parent], group[one.child])): one.name for one in moving}
     between = {pair: name for pair in _near(assembly) - joined if (name := names.get(frozenset((group[pair[0]], group[pair[1]]))))}
     gaps = _measured(assembly, sorted(between), RESTING_MM)
     return {pair: between[pair] for pair, gap in gaps.items() if gap is not None and gap < RESTING_MM}

@@ -153,6 +153,19 @@ def test_parts_that_rest_on_what_carries_their_joint_are_excluded(gap: float, re
     assert simulate_assembly(assembly, "rack", engines=("mujoco",)).ok
 
 
+def test_parts_that_are_fixed_together_rest_on_nothing(cache: BuildCache) -> None:
+    """Two blocks that touch each other, both on one plate, beside a wheel: they never move, which is the only claim about them."""
+    plate = block("plate", (60, 60, 10), a=frame(at=(-10, 0, 5)), b=frame(at=(10, 0, 5)), hub=frame(at=(0, 0, 80)))
+    blocks = [block(name, (20, 20, 20), foot=frame(at=(0, 0, -10))) for name in "ab"]
+    wheel = block("wheel", (5, 5, 5), hub=frame())
+    joints = [declare.fixed(f"on_{each.name}", plate[each.name], each["foot"]) for each in blocks]
+    joints.append(declare.revolute("spin", plate["hub"], wheel["hub"], limits=(-1, 1)))
+    assembly = Assembly.from_parts("two", parts=[plate, *blocks, wheel], joints=joints, ground="plate")
+
+    assert gaps.resting(assembly) == {}
+    assert write_urdf(assembly, srdf=True, cache=cache).files["two.srdf"].decode().count('link1="a" link2="b"') == 1
+
+
 def lid_above_box(gap: float, wide: float = 20.0) -> Assembly:
     """Two blocks, 20 mm high, the upper one `gap` above the lower one."""
     lower, upper = block("lower", (20, 20, 20), top=frame(at=(0, 0, 10 + gap))), block("upper", (wide, 20, 20), foot=frame(at=(0, 0, -10)))
