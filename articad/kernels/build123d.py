@@ -37,7 +37,7 @@ from articad.kernels.zygote import JobOutcome, Zygote, ZygoteDiedError, ends_by
 from articad.processes import scratch
 
 ANGLE_DEG = 5.0  # angular deflection of the mesh, if the linear deflection allows more
-WORKER = 5  # increased when the worker measures or meshes differently, so that cached parts are built again
+WORKER = 6  # increased when the worker measures or meshes differently, so that cached parts are built again
 MESH_VOLUME_SHARE = 1.0  # factor of area and deflection by which a mesh's volume may differ from the solid's
 RESULT_FILES = {"npz": "part.npz", "brep": "part.brep", "step": "part.step"}
 _MAGIC = {"brep": b"\nCASCADE Topology", "step": b"ISO-10303-21;"}

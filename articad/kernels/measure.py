@@ -105,9 +105,10 @@ def measure(
     mesh = tessellate(solid, deflection, angle)
     report["closed"] = is_closed(mesh.triangles)
     BRepTools.Clean_s(solid)
+    brep = _brep(solid)  # before STEP, whose writer adds curves to the edges of planes
     step = step_file(solid, name)
     report["valid_in_step"] = report["valid"] and _is_one_solid(step)
-    return Measured(report, {"npz": npz(mesh), "brep": _brep(solid), "step": step})
+    return Measured(report, {"npz": npz(mesh), "brep": brep, "step": step})
 
 
 def _is_one_solid(step: bytes) -> bool:
