@@ -1,6 +1,7 @@
 """Judge each joint: which surfaces make it, which freedoms they leave that it should remove, and where they lose it.
 
-A joint is examined at rest and at both ends of each of its freedoms. Nothing is known between these poses.
+A joint is examined at rest and at both ends of each of its freedoms. Nothing is known between these poses. A joint that other parts
+hold is examined at rest alone.
 """
 
 from __future__ import annotations
@@ -92,6 +93,7 @@ class JointCheck:
         by: What else holds it. For straight ways chains of parts: one that is in the child's way, one that is in the way of that one, up to a part of
             the parent's side; if there are none, each part that touches the child.
         share: Least share of the guide that is engaged at an end of the range; None for joints that do not slide.
+        share_at: That end [rad, mm].
         poses: Number of poses examined.
         reason: What is not assessed.
     """
@@ -105,6 +107,7 @@ class JointCheck:
     at: Mapping[str, float] | None = None
     by: tuple[tuple[str, ...], ...] = ()
     share: float | None = None
+    share_at: Mapping[str, float] | None = None
     poses: int = 0
     reason: str = ""
 
@@ -128,9 +131,10 @@ class JointCheck:
                 }
                 for loss in self.losses
             ],
-            "at": None if self.at is None else {name: rounded(value) for name, value in self.at.items()},
+            "at": _rounded(self.at),
             "held_by": [list(chain) for chain in self.by],
             "engaged_share": rounded(self.share),
+            "engaged_at": _rounded(self.share_at),
             "poses": self.poses,
             "reason": self.reason,
         }
@@ -219,9 +223,10 @@ class _Examined:
         if joint.type is JointType.SCREW:
             row = replace(row, reason="the thread is not assessed")
         losses = self._losses(rest, found)
+        row = replace(row, verdict="made", losses=tuple(self._held(loss, holders) for loss in losses))
         if losses:
-            return self._otherwise(replace(row, losses=tuple(self._held(loss, holders) for loss in losses)), rest, found)
-        return self._over(replace(row, verdict="made"), found, reached)
+            row = self._otherwise(row, rest, found)
+        return self._over(row, found, reached) if row.verdict in ("made", "partly") and not row.by else row
 
     def _losses(
         self, at: Sides, found: Sequence[Pair], values: Sequence[float] | None = None, more: Sequence[Touch] = ()
@@ -352,21 +357,20 @@ class _Examined:
         return False
 
     def _over(self, row: JointCheck, found: Sequence[Pair], reached: Mapping[str, tuple[float, float]]) -> JointCheck:
-        """Return the row of a joint that is made at rest, examined at the ends of its range."""
-        length = _guide(found)
-        least: float | None = None
+        """Return the row of a joint that its own two sides make at rest, perhaps in part, examined at the ends of its range.
+
+        The first end that loses what is held at rest ends the examination: its losses replace those at rest.
+        """
+        length = _guide(found) if self._slides() else 0.0
         for at, values in self._ends(reached):
             moved = sides(self.scene, self.joint, values)
             there = pairs(moved, self.reach)
             row = replace(row, poses=row.poses + 1)
+            if self._slides() and length > _SHORT_MM and (row.share is None or _share(there, length) < row.share):
+                row = replace(row, share=_share(there, length), share_at=at)
             losses = self._losses(moved, there, values)
-            if _unsupported(losses):
-                return replace(row, verdict="partly", losses=losses, at=at, share=_share(there, length) if self._slides() else None)
-            if self._slides() and length > _SHORT_MM:
-                share = _share(there, length)
-                if least is None or share < least:
-                    least = share
-                    row = replace(row, share=share, at=at if _is_short(share) else row.at)
+            if _lost_since(self.joint.type, row.losses, losses):
+                return replace(row, verdict="partly", losses=losses, at=at)
         return row
 
     def _slides(self) -> bool:
@@ -408,6 +412,37 @@ def _unsupported(losses: Sequence[FreeWay]) -> bool:
     return any(not loss.by_weight for loss in losses)
 
 
+def _lost_since(kind: JointType, rest: Sequence[FreeWay], there: Sequence[FreeWay]) -> bool:
+    """Return whether a joint loses a way at another pose, but not by weight, that it holds at rest, or ends there after some play.
+
+    The ways across an axis that the child turns about turn with it. A tilt that ends says nothing new of a joint with losses at rest:
+    it may be there by a hair less.
+    """
+    turns = kind is not JointType.SLIDER
+    lost = {_family(loss.way, turns) for loss in rest}
+    endless = {_family(loss.way, turns) for loss in rest if math.isinf(loss.room)}
+    for loss in there:
+        family, ends = _family(loss.way, turns), math.isfinite(loss.room)
+        tilts = loss.way.startswith("about")
+        if loss.by_weight or (rest and tilts and ends):
+            continue
+        if family not in lost or not (ends or tilts or family in endless):
+            return True
+    return False
+
+
+def _family(way: str, turns: bool) -> str:
+    """Return the name of the ways that turn into each other as the child turns about z; each straight one of +z and -z is alone."""
+    axis = way[-1]
+    if not turns or axis == "z":
+        return way
+    return "about" if way.startswith("about") else "across"
+
+
+def _rounded(at: Mapping[str, float] | None) -> dict[str, Any] | None:
+    return None if at is None else {name: rounded(value) for name, value in at.items()}
+
+
 def _summary(found: Sequence[Pair]) -> tuple[tuple[str, tuple[str, str], float, int], ...]:
     """Return the pairs by kind and parts: the least play, and how many there are."""
     table: dict[tuple[str, tuple[str, str]], list[float]] = {}
@@ -436,7 +471,7 @@ def _is_short(share: float) -> bool:
 
 def _findings(row: JointCheck) -> Iterator[Finding]:
     where, a, b = f"joints.{row.joint}", *row.parts
-    at = "" if not row.at else " at " + ", ".join(f"{name} = {value:.4g}" for name, value in row.at.items())
+    at = _at(row.at)
     ways = _left([loss for loss in row.losses if not loss.by_weight])
     pose = None if row.at is None else dict(row.at)
     play = _play_across(row)
@@ -468,18 +503,22 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             stage="fit",
             **across,
         )
-    if row.share is not None and _is_short(row.share) and row.verdict == "made":
+    if row.share is not None and _is_short(row.share) and row.at is None:
         yield Finding(
             code="W_JOINT_SHORT",
             where=where,
             parts=row.parts,
-            message=f"Joint {row.joint!r} keeps {100 * row.share:.3g} % of its guide engaged{at}; at least 25 % is needed.",
+            message=f"Joint {row.joint!r} keeps {100 * row.share:.3g} % of its guide engaged{_at(row.share_at)}; at least 25 % is needed.",
             hint="Lengthen the guide, or shorten the travel.",
             value=row.share,
             limit=LEAST_SHARE,
-            pose=pose,
+            pose=None if row.share_at is None else dict(row.share_at),
             stage="fit",
         )
+
+
+def _at(pose: Mapping[str, float] | None) -> str:
+    return "" if pose is None else " at " + ", ".join(f"{name} = {value:.4g}" for name, value in pose.items())
 
 
 def _play_across(row: JointCheck) -> float | None:

@@ -1,8 +1,10 @@
 """A model in MuJoCo: held at rest, driven joint by joint over its ranges, then released.
 
 Joints are held and driven by computed torque: `τ = M (ω² e - 2 ω v) + bias`, with e limited so that an obstacle is pushed but not
-penetrated. Where other joints follow by loops and couplings with the Jacobian J, the inertia that the driven joints S feel at rest replaces M:
-`(S P Sᵀ)⁻¹` with `P = M⁻¹ - M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ J M⁻¹` (Gauss's principle: the accelerations that the constraints permit). A model's own actuators are switched off.
+penetrated. Where other joints follow by loops and couplings with the Jacobian J, the inertia that the driven joints S feel replaces M:
+`(S P Sᵀ)⁻¹` with `P = M⁻¹ - M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ J M⁻¹` (Gauss's principle: the accelerations that the constraints permit). Where it
+is less than at rest, it is computed anew as the pose changes: a crank feels nothing of a heavy rocker at the ends of its swing. At a dead point of
+the driver itself it has no bound; that at rest is used there. A model's own actuators are switched off.
 
 Free bodies may rest on what joints hold, or joints may hold up a body that floats, as legs do. Then the held joints get rotors that match its mass, and
 the torque that its weight causes is added to theirs. It is measured while the joints are locked and the free bodies settle, less what the same
@@ -42,6 +44,7 @@ MOST_STEPS = 20_000  # of a stroke: 40 s at MuJoCo's default time step
 FREE_S = 1.0
 IMPACT_S = 0.3  # until an impact in loops and couplings has decayed
 LOCKED = 1e-6  # share of its mobility that loops leave to a joint that cannot move
+TURNED = 0.02  # rad or m: a change of pose after which the inertia that driven joints feel is computed anew
 PUSH = 0.2  # rad/s or m/s with which a model is released
 
 
@@ -309,7 +312,8 @@ class Trial:
         at, target = self.model.jnt_qposadr[joint], np.array(self.start)
         free = set(np.flatnonzero(np.isin(self.model.dof_jntid, list(following))).tolist())
         held = np.array([dof for dof in self._hinged_dofs() if dof not in free], dtype=int)
-        self.felt = self._inertia(held) if free else None
+        self.felt = at_rest = self._inertia(held) if free else None
+        felt_at, own = np.array(self.data.qpos), int(np.searchsorted(held, self.model.jnt_dofadr[joint]))
         rest = float(self.start[at])
         low, high, blocker, lag = np.array(self.start), np.array(self.start), "", 0.0
         steps = self._steps(max(STROKE_S, (upper - lower) / mean_pace))
@@ -324,6 +328,9 @@ class Trial:
                 target[self.model.jnt_qposadr[follower]] = ratio * value + offset
                 pace[self.model.jnt_dofadr[follower]] = ratio * speed
             before = value
+            if at_rest is not None and np.abs(self.data.qpos - felt_at).max() > TURNED:
+                now, felt_at = self._inertia(held), np.array(self.data.qpos)
+                self.felt = now if now[own, own] < at_rest[own, own] else at_rest
             if not self._step(target, held, free, pace):
                 break
             np.minimum(low, self.data.qpos, out=low)
@@ -400,7 +407,7 @@ class Trial:
         return True
 
     def _inertia(self, held: NDArray[np.int_]) -> FloatArray:
-        """Return the inertia that controlled joints feel at rest through loops and couplings, `(H, H)`.
+        """Return the inertia that controlled joints feel through loops and couplings, `(H, H)`.
 
         In coordinates in which M⁻¹ of these joints is 1, the eigenvalues of P are the shares of mobility that loops leave, from 0 to 1.
         Directions that are locked have their own inertia.

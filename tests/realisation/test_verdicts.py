@@ -102,7 +102,27 @@ def test_a_pin_that_leaves_its_bore_in_motion(reach: float, codes: tuple[str, ..
     row, report = judged(meshes, "cylindrical", lower=(0.0, -1.0), upper=(reach, 1.0))
     assert report.findings.codes == codes
     assert row.share == pytest.approx(max(0.0, 1 - reach / 40), abs=1e-6)
-    assert (row.at is not None) == bool(codes)
+    assert (row.at is not None) == ("W_JOINT_LEAVES" in codes)
+    assert row.share_at == {"j.travel": reach}
+
+
+@pytest.mark.parametrize("notch", [False, True])
+@pytest.mark.parametrize(
+    ("reach", "codes"),
+    [
+        (10.0, ("W_JOINT_PARTLY_MADE",)),
+        (34.0, ("W_JOINT_PARTLY_MADE", "W_JOINT_SHORT")),
+        (41.0, ("W_JOINT_LEAVES",)),
+        (-41.0, ("W_JOINT_LEAVES",)),
+    ],
+)
+def test_a_guide_that_leaves_a_way_free_at_rest_is_examined_at_the_ends_too(reach: float, codes: tuple[str, ...], notch: bool) -> None:
+    guide = Box(30, 30, 40) - Cylinder(5.1, 60) - (Pos(10, 0, 0) * Box(20, 4, 60) if notch else Pos(0, 0, 0) * Cylinder(5.1, 60))
+    row, report = judged({"a": guide, "b": Cylinder(5, 40)}, "slider", lower=(min(0.0, reach),), upper=(max(0.0, reach),))
+    assert report.findings.codes == codes, row
+    assert (
+        {loss.way for loss in row.losses} > {"about z"} if "W_JOINT_LEAVES" in codes else {loss.way for loss in row.losses} == {"about z"}
+    )
 
 
 @functools.cache
