@@ -203,7 +203,7 @@ def _run(command: Command, options: argparse.Namespace, terminal: Terminal) -> i
     except BrokenPipeError:
         raise
     except OSError as error:
-        terminal.failure(error, f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}.")
+        terminal.failure(error, _refusal(error))
         return CANNOT_GO_ON
     except Exception as error:  # noqa: BLE001 - no traceback reaches a user who did not ask for one
         more = "" if terminal.verbose else " Run it again with -v for the traceback."
@@ -212,6 +212,15 @@ def _run(command: Command, options: argparse.Namespace, terminal: Terminal) -> i
     if "error" in report:
         return CANNOT_GO_ON
     return OK if report["ok"] else FINDINGS
+
+
+def _refusal(error: OSError) -> str:
+    """Return what the system refused, where, and what would help."""
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        return "the current folder was removed. Change to another one."
+    return f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}."
 
 
 if __name__ == "__main__":

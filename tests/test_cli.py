@@ -188,6 +188,18 @@ def test_what_an_output_cannot_encode_is_spelled(encoding: str, as_json: bool, t
         assert ("\\u2192\\ud83d\\ude00" in said) is (encoding != "utf-8")
 
 
+@pytest.mark.parametrize("command", [["doctor"], ["new", "a_box"]])
+def test_a_current_folder_that_was_removed_is_named(command: list[str], tmp_path: Path) -> None:
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    script = "import os, sys; from articad import cli; os.chdir(sys.argv[1]); os.rmdir(sys.argv[1]); sys.exit(cli.main(sys.argv[2:]))"
+
+    done = subprocess.run([sys.executable, "-c", script, str(gone), *command], capture_output=True, text=True, check=False, timeout=120)
+
+    assert done.returncode == cli.CANNOT_GO_ON
+    assert "the current folder was removed. Change to another one." in done.stderr
+
+
 @pytest.mark.parametrize("where", ["articad.cli._parsed", "articad.commands.terminal.Terminal", "articad.cli._run"])
 def test_an_interrupt_before_the_command_begins_is_no_traceback(where: str, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object, **__: object) -> None:
