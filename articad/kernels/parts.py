@@ -257,7 +257,8 @@ def _derived_in_order(resolved: ResolvedPlan) -> Iterator[str]:
 
 def _all_failures(errors: Mapping[str, KernelError], total: int) -> ContractError:
     findings = Findings(finding for error in errors.values() for finding in error.findings)
-    lines = [f"{len(errors)} of {total} part scripts failed.", *(str(error) for error in errors.values())]
+    reasons = dict.fromkeys(str(error) for error in errors.values())  # one for all, if it is the machine's
+    lines = [f"{len(errors)} of {total} parts could not be built.", *reasons]
     return ContractError("\n".join(lines), findings=findings, parts=tuple(errors))
 
 

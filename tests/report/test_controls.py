@@ -434,9 +434,9 @@ def test_the_banner_of_watch_appears_and_goes_and_what_is_seen_survives(chromium
     before = page.evaluate("articad.state()")
     theme = page.evaluate("document.documentElement.dataset.theme")
 
-    served.error = ("1 of 2 part scripts failed.", "parts/lid.py: ValueError: not today. At line 2.")
+    served.error = ("1 of 2 parts could not be built.", "parts/lid.py: ValueError: not today. At line 2.")
     page.wait_for_selector("#banner.failed:visible")
-    assert page.inner_text("#banner").splitlines()[0] == "1 of 2 part scripts failed."
+    assert page.inner_text("#banner").splitlines()[0] == "1 of 2 parts could not be built."
     assert "line 2" in page.inner_text("#banner")
     served.error = ()
     page.wait_for_selector("#banner", state="hidden")
