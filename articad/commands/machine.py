@@ -64,7 +64,9 @@ def _install(options: argparse.Namespace, terminal: Terminal) -> Report:
             terminal.say(lines[-1])
         code = child.finish().code
     if code != 0:
-        raise freecad_install.unavailable(f"the installer ended with code {code}: {lines[-1].rstrip('.') if lines else 'it gave no reason'}")
+        raise freecad_install.unavailable(
+            f"the installer ended with code {code}: {lines[-1].rstrip('.') if lines else 'it gave no reason'}"
+        )
     report: Report = {"schema": "articad.install/1", "ok": True, "program": "freecad", "findings": []}
     if options.remove:
         return report

@@ -6,7 +6,6 @@ hold is examined at rest alone.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -326,7 +325,7 @@ class _Examined:
         return bool(kinds)
 
     def _around(self, rest: Sides) -> tuple[list[Touch], set[str]]:
-        """Return the contacts of all other bodies at rest, and the parts of those that touch the joint's child."""
+        """Return the contacts at rest of the bodies that the child touches, at once or through others, and the parts that touch it itself."""
         own = {one.part for side in rest for one in side}
         to_joint = (self.poses[self.joint.parent] @ self.joint.T_parent_connector).inverse()
         bodies: dict[str, list[PartFace]] = {}
@@ -335,12 +334,19 @@ class _Examined:
                 T = np.asarray((to_joint @ self.poses[name]).matrix)
                 leader = self.scene.relations.rigid.leader(name)
                 bodies.setdefault(leader, []).extend(PartFace(name, face.moved(T)) for face in faces_of(mesh))
-        numbered = [(GROUND, rest.parent), (0, rest.child), *((k + 1, tuple(faces)) for k, faces in enumerate(bodies.values()))]
-        touches, by = [], set()
-        for (i, first), (j, second) in itertools.combinations(numbered, 2):
-            for pair in pairs(Sides(first, second), self.reach) if j > 0 else ():
-                touches.append(Touch(i, j, pair.points, pair.normals, pair.gaps, pair.grazing))
-                by |= {pair.parts[1]} if i == 0 else set()
+        numbered = {GROUND: rest.parent, 0: rest.child} | {k: tuple(faces) for k, faces in enumerate(bodies.values(), start=1)}
+        touches, by, done, reached = [], set(), {(GROUND, 0)}, [0]
+        for one in reached:  # grows: what touches nothing that touches the child does not hold it
+            for other in numbered:
+                i, j = min(one, other), max(one, other)
+                if i == j or (i, j) in done:
+                    continue
+                done.add((i, j))
+                found = pairs(Sides(numbered[i], numbered[j]), self.reach)
+                touches += [Touch(i, j, pair.points, pair.normals, pair.gaps, pair.grazing) for pair in found]
+                by |= {pair.parts[1] for pair in found if i == 0}
+                if found and other != GROUND and other not in reached:
+                    reached.append(other)
         return touches, by
 
     def _unknown_near(self, rest: Sides) -> bool:
