@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 import json
 import time
 from collections import Counter
@@ -31,7 +32,7 @@ from articad_bench.staged_cheats import STAGED, StagedCheat, alike, staged_cheat
 from articad_bench.subject import Subject
 from articad_bench.task import Task, read_json, read_task
 
-__all__ = ["COSTLY", "SCHEMA", "CheatRow", "page", "refused_by", "run_cheats"]
+__all__ = ["COSTLY", "SCHEMA", "CheatRow", "page", "refused_by", "run_cheats", "sources_of"]
 
 SCHEMA: Final = "articad.bench-cheats/1"
 SAME: Final = 0.01  # share of the matter by which a mirror image may differ from what it mirrors
@@ -67,6 +68,24 @@ _SOURCES: Final = (
     "section_checks.py",
     "around.py",
     "bodies.py",
+)
+_OF_KINDS: Final = frozenset(  # of these, what no check of a task comes from decides nothing of it
+    f"{name}_checks.py"
+    for name in (
+        "edit",
+        "function",
+        "gear",
+        "machined",
+        "module",
+        "outline",
+        "path",
+        "room",
+        "section",
+        "spacing",
+        "stack",
+        "strength",
+        "whole",
+    )
 )
 COSTLY: Final = (
     "effort",
@@ -330,9 +349,15 @@ def _digest(folder: Path, task: Task) -> str:
     for place in reference_folders(folder, task):
         for file in sorted(path for path in place.rglob("*") if path.suffix in {".json", ".py"}):
             found.update(file.relative_to(place).as_posix().encode() + file.read_bytes())
-    for name in _SOURCES:
+    for name in sources_of(task):
         found.update(Path(__file__).with_name(name).read_bytes())
     return found.hexdigest()[:16]
+
+
+def sources_of(task: Task) -> list[str]:
+    """Return the files that decide what comes of a task's cheats: those of checks that it has, and what all share."""
+    used = {Path(inspect.getfile(type(check))).name for stage in task.stages for check in stage}
+    return [name for name in _SOURCES if name in used or name not in _OF_KINDS]
 
 
 def _known(file: Path) -> list[CheatRow]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import math
 from collections.abc import Callable
@@ -21,7 +22,7 @@ from articad.geometry import Part, TriMesh, box, cylinder
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.resolve import Fit, Waiver
 from articad_bench.bindings import bindings, bound
-from articad_bench.cheat_run import CheatRow, page, refused_by, run_cheats, the_same
+from articad_bench.cheat_run import CheatRow, page, refused_by, run_cheats, sources_of, the_same
 from articad_bench.cheats import CHEATS, cheats_of
 from articad_bench.subject import Subject
 from articad_bench.task import TASKS, Task, tasks_in
@@ -574,6 +575,16 @@ def test_cheats_are_tried_in_other_processes_and_each_answer_is_kept_as_it_comes
     assert kept == [1, 2]
     assert report["tried"] == 2
     assert run_cheats(chosen, tmp_path, every=every, spread=spread)["tried"] == 3
+
+
+def test_a_check_that_changes_makes_rows_of_its_own_tasks_old() -> None:
+    """Each file that a kind of check of a task comes from is counted, and one that only holds checks of other tasks is not."""
+    every = {task.name: task for _, task in tasks_in(TASKS)}
+    homes = {name: {Path(inspect.getfile(type(check))).name for stage in task.stages for check in stage} for name, task in every.items()}
+
+    assert all(homes[name] <= set(sources_of(task)) for name, task in every.items())
+    assert {name for name, task in every.items() if "gear_checks.py" in sources_of(task)} == {"gears_18_36", "repair_gears"}
+    assert all({"checks.py", "subject.py", "cheats.py"} <= set(sources_of(task)) for task in every.values())
 
 
 def test_every_kind_of_cheat_is_explained_and_the_page_is_that_of_its_results() -> None:
