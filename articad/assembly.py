@@ -573,7 +573,7 @@ class Assembly:
     def check_joints(self, joints: Sequence[str] | None = None) -> Realisation:
         """Judge how each joint is made: which surfaces of its parts make it, and which freedoms they leave that it should remove.
 
-        Couplings whose parts touch, such as gears, are sampled over the ranges of the drivers: do these parts stay together? Joints are examined at rest and at the ends of their ranges, to first order; nothing is proven between. All findings are warnings.
+        Couplings whose parts touch, such as gears, are sampled over the ranges of the drivers: do these parts stay together? Joints are examined at rest and, where no other parts hold them, at the ends of their ranges, to first order; nothing is proven between. All findings are warnings.
 
         Args:
             joints: Names of the joints to judge; all by default.

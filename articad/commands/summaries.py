@@ -128,7 +128,9 @@ def print_counts(report: Report, terminal: Terminal) -> None:
 
 def print_joints(rows: list[Report], terminal: Terminal) -> None:
     """Print for each joint its verdict, the surfaces that make it, and what they leave free."""
-    terminal.say(f"Joints: {_counts(row['verdict'] for row in rows)}; examined at rest and at the ends of their ranges.")
+    terminal.say(
+        f"Joints: {_counts(row['verdict'] for row in rows)}; examined at rest and, if no others hold them, at the ends of their ranges."
+    )
     for row in rows:
         made = [f"{pair['kind']} ({' and '.join(pair['parts'])}, {pair['play_mm']:.3g} mm)" for pair in row["made_by"]]
         told = [", ".join(made) or "no surfaces found", *([row["reason"]] if row["reason"] else [])]
