@@ -593,6 +593,7 @@ def test_every_kind_of_cheat_is_explained_and_the_page_is_that_of_its_results() 
     text = (folder / "cheats.md").read_text(encoding="utf-8")
 
     assert all(f"| {kind} |" in text for kind in (*CHEATS, "other"))
-    assert text == page(stored, [CheatRow(**row) for row in stored["rows"]])
+    rows = [CheatRow(**row) for row in stored["rows"]]
+    assert text == page(stored, rows)
     assert stored["ok"] is (not stored["passed"])
-    assert stored["passed"] == [[row["task"], row["cheat"]] for row in stored["rows"] if row["refused_by"] is None and not row["same"]]
+    assert stored["passed"] == [[row.task, row.named] for row in rows if row.refused_by is None and not row.same]
