@@ -372,8 +372,9 @@ class _Examined:
             moved = sides(self.scene, self.joint, values)
             there = pairs(moved, self.reach)
             row = replace(row, poses=row.poses + 1)
-            if self._slides() and length > _SHORT_MM and (row.share is None or _share(there, length) < row.share):
-                row = replace(row, share=_share(there, length), share_at=at)
+            share = _share(there, length) if length > _SHORT_MM else None
+            if share is not None and (row.share is None or share < row.share):
+                row = replace(row, share=share, share_at=at)
             losses = self._losses(moved, there, values)
             if _lost_since(self.joint.type, row.losses, losses):
                 return replace(row, verdict="partly", losses=losses, at=at)
