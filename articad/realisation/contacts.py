@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from articad.arrays import BoolArray, FloatArray, IntArray
+from articad.connectors.quaternion import cross
 from articad.geometry.faces import Face
 from articad.realisation.bores import TILT
 from articad.realisation.sides import PartFace, Sides, boxes
@@ -280,18 +281,12 @@ def _hits(face: Face, points: FloatArray, ways: FloatArray, limit: float) -> Boo
     which, triangle = _close(face.corners, points, limit)
     a, b, c = (face.corners[triangle, k] for k in range(3))
     e1, e2, d, s = b - a, c - a, ways[which], points[which] - a
-    across, turned = _cross(d, e2), _cross(s, e1)
+    across, turned = cross(d, e2), cross(s, e1)
     det = (e1 * across).sum(axis=1)
     det = np.where(np.abs(det) > 1e-12, det, np.inf)
     u, v, t = (s * across).sum(axis=1) / det, (d * turned).sum(axis=1) / det, (e2 * turned).sum(axis=1) / det
     met = (u >= -_EDGE) & (v >= -_EDGE) & (u + v <= 1 + _EDGE) & (np.abs(t) <= limit) & np.isfinite(det)
     return np.asarray(np.bincount(which[met], minlength=len(points)) > 0)
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the cross products of rows, `(N, 3)`: what numpy.cross does, at a third of its cost."""
-    x, y, z = (a[:, i] * b[:, j] - a[:, j] * b[:, i] for i, j in ((1, 2), (2, 0), (0, 1)))
-    return np.stack([x, y, z], axis=1)
 
 
 def _close(corners: FloatArray, points: FloatArray, limit: float) -> tuple[IntArray, IntArray]:
