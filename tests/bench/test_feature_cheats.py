@@ -8,7 +8,7 @@ import pytest
 
 from articad_bench.cheat_run import _judged
 from articad_bench.feature_cheats import feature_cheats, features
-from articad_bench.reference import reference, reference_scripts
+from articad_bench.reference import reference, reference_plan, reference_scripts
 from articad_bench.task import TASKS, Task, tasks_in
 
 TASK = "flange_four_holes"
@@ -59,5 +59,6 @@ def test_what_tasks_leave_open_exists_in_their_references() -> None:
             scripts = reference_scripts(folder, task)
             known = {f"{part}: {feature}" for part, source in scripts.items() for feature in features(source)} | set(scripts)
             known |= {f"{part} along {axis}" for part in scripts for axis in "xyz"}
+            known |= {f"joint {joint.name}" for joint in reference_plan(folder, task).joints}
             assert set(task.left_open) <= known, task.name
             assert all(reason.strip() for reason in task.left_open.values())
