@@ -15,6 +15,7 @@ from articad.assembly import Assembly
 from articad.papers.items import items_of
 from articad.plan.schema import AssemblyPlan
 from articad_bench import drawing
+from articad_bench.checks import PartSize
 from articad_bench.drawing import COLORS, PANE, draw_task
 from articad_bench.pictures import PHOTO_VIEWS, SHEET_PIXELS, is_drawn, pictures_of
 from articad_bench.reference import reference
@@ -79,10 +80,16 @@ def test_what_is_drawn_has_its_measures_beside_it() -> None:
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", [task.name for _, task in tasks_in(TASKS) if task.drawing is not None])
-def test_a_kept_drawing_is_that_of_the_reference(name: str) -> None:
+def test_a_kept_drawing_is_that_of_the_reference_and_each_size_it_lists_is_asked_for(name: str) -> None:
     ((folder, task),) = tasks_in(TASKS, names=[name])
     assert task.drawing is not None
-    drawn = pictures_of(reference(folder, task), task.drawing)
+    assembly = reference(folder, task)
+    subject = Subject(assembly)
+    sizes = [check for check in task.checks if isinstance(check, PartSize) and sum(side is not None for side in check.mm) >= 2]
+    asked = {part for check in sizes for part in subject.of_size(check.mm, check.tolerance)}
+    assert set(task.drawing.parts) <= asked
+
+    drawn = pictures_of(assembly, task.drawing)
     assert sorted(drawn) == sorted(task.images)
     assert [name for name, content in drawn.items() if differing(content, (folder / name).read_bytes()) > 10] == []
 
