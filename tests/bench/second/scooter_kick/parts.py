@@ -18,9 +18,9 @@ def deck(deck_z, deck_thick, deck_wide, rear_x, rear_z, axle_d, leg_in, leg, hin
     body = chamfer(board.faces().sort_by(Axis.Z)[-1].edges(), 1)
     eye_z, hinge, flap = rear_z - deck_z, hinge_z - deck_z, flap_z - deck_z
     for side in (-1, 1):
-        body += _plate(leg, side * (leg_in + leg / 2), (rear_x, eye_z, 14), (start + 8, deck_thick / 2, 9))
+        body += _plate(leg, side * (leg_in + leg / 2), (rear_x, eye_z, 12), (start + 8, deck_thick / 2, 9))
         body += _plate(leg - 3, side * (flap_half + 0.5 + (leg - 3) / 2), (flap_x, flap, 7), (flap_x, 8, 7))
-        body += _plate(lug, side * (lug_in + lug / 2), (hinge_x, hinge, 15), (hinge_x + 11, 18, 8), (hinge_x - 11, 18, 8)) - _plate(60, 0, (hinge_x, -30, 30))
+        body += _plate(lug, side * (lug_in + lug / 2), (hinge_x, hinge, 12), (hinge_x + 11, 18, 8), (hinge_x - 11, 18, 8)) - _plate(60, 0, (hinge_x, -30, 30))
     body += Pos(rear_x, 0, eye_z) * ACROSS * Cylinder(axle_d / 2, 2 * leg_in + leg)
     body -= Pos(hinge_x, 0, hinge) * ACROSS * Cylinder(pivot_d / 2 + play, 100)
     return body - Pos(flap_x, 0, flap) * ACROSS * Cylinder(flap_d / 2 + play, 100)

@@ -12,7 +12,7 @@ def build(part):
             -d["rear_x"] - 172, 8, 18, align=(Align.MAX, Align.CENTER, Align.CENTER)
         ) + Pos(d["rear_x"], side * (d["wheel_width"] / 2 + 6), d["wheel"]) * Rot(X=90) * Cylinder(12, 8)
         body += Pos(-180, side * 20, 60) * Box(14, 8, 56, align=LOW)
-        body += Pos(d["neck_x"] - 30, side * 19.5, 60) * Box(42, 10, 47, align=LEFT_LOW)
+        body += Pos(d["neck_x"] - 30, side * 19.5, 60) * Box(42, 10, d["neck_z"] - 48, align=LEFT_LOW)
     body += (
         Pos(-180, 0, 108) * Rot(X=90) * Cylinder(d["flap_pin"], 46)
         + Pos(d["neck_x"], 0, d["neck_z"]) * Rot(X=90) * Cylinder(d["neck_pin"], 48)
