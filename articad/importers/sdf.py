@@ -24,6 +24,7 @@ from articad.geometry.shapes import primitive_mesh
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import (
+    LARGEST_MM,
     MAX_LINKS,
     MAX_NAME,
     MAX_SHAPES,
@@ -458,8 +459,9 @@ class _Reader:
             limit, dynamics = axis.find("limit"), axis.find("dynamics")
             low, high = (_number(limit, name, usual, scope) for name, usual in (("lower", -math.inf), ("upper", math.inf)))
             bounds = (-math.inf if low <= -NO_BOUND else low * unit, math.inf if high >= NO_BOUND else high * unit)
-            if bounds[0] > bounds[1]:
-                message = f"The limits [{low:g}, {high:g}] {'m' if slides else 'rad'} are reversed; the joint is treated as endless."
+            if bounds[0] > bounds[1] or low > LARGEST_MM or high < -LARGEST_MM:
+                fault = "are reversed" if bounds[0] > bounds[1] else "are beyond any position"
+                message = f"The limits [{low:g}, {high:g}] {'m' if slides else 'rad'} {fault}; the joint is treated as endless."
                 self.raw.findings.append(
                     Finding(
                         code="W_IMPORT_LIMITS",
@@ -585,10 +587,10 @@ def _is_number(word: str) -> bool:
 
 
 def _number(above: Any, tag: str, usual: float, scope: Scope) -> float:
-    """Return the number in an element below another; `usual` if there is none. Infinities and huge numbers count as none.
+    """Return the number in an element below another; `usual` if there is none. Only what is usually infinite may be infinite or huge.
 
     Raises:
-        ReadError: If it is not a number.
+        ReadError: If it is not a plausible number.
     """
     element = None if above is None else above.find(tag)
     if element is None or not (element.text or "").strip():
@@ -597,6 +599,6 @@ def _number(above: Any, tag: str, usual: float, scope: Scope) -> float:
         value = float(element.text)
     except ValueError:
         value = math.nan
-    if math.isnan(value):
-        raise scope.fault(element, f"<{tag}> holds {element.text.strip()[:60]!r}, not a number.")
+    if math.isnan(value) or (abs(value) > LARGEST_MM and math.isfinite(usual)):
+        raise scope.fault(element, f"<{tag}> holds {element.text.strip()[:60]!r}, not a plausible number.")
     return value

@@ -430,25 +430,35 @@ def _add_joint(model: RawModel, joint: Any, types: dict[str, str], path: Path) -
             (bounds,),
             effort=(None if limit is None or limit.effort is None else abs(limit.effort) * force,),
             velocity=(None if limit is None or limit.velocity is None else abs(limit.velocity) * unit,),
-            damping=(0.0 if dynamics is None else float(dynamics.damping or 0.0) * force / unit,),
-            friction=(0.0 if dynamics is None else float(dynamics.friction or 0.0) * force,),
+            damping=(_resistance(dynamics, "damping") * force / unit,),
+            friction=(_resistance(dynamics, "friction") * force,),
         )
     )
     if joint.mimic is not None:
         model.ties.append(_tie(joint, types))
 
 
+def _resistance(dynamics: Any, name: str) -> float:
+    """Return the damping or friction of a joint in SI units; zero where the file states none, or an empty one."""
+    text = (dynamics and getattr(dynamics, name)) or ""
+    return float(text.strip() or 0.0)
+
+
 def _range(model: RawModel, joint: Any, unit: float) -> tuple[float, float]:
     limit = joint.limit
     if joint.type == "continuous":
         return ENDLESS
-    lower, upper = (None, None) if limit is None else (limit.lower, limit.upper)
-    if lower is None and upper is None:
+    stated = (None, None) if limit is None else (limit.lower, limit.upper)
+    lower, upper = (value or 0.0 for value in stated)
+    told = f"[{lower:g}, {upper:g}] {'rad' if unit == 1 else 'm'}; it is treated as endless."
+    if stated == (None, None):
         message = f"Joint {joint.name!r} has no limits; it is treated as endless."
-    elif (lower or 0.0) > (upper or 0.0):
-        message = f"Joint {joint.name!r} has reversed limits [{lower}, {upper}] {'rad' if unit == 1 else 'm'}; it is treated as endless."
+    elif lower > upper:
+        message = f"Joint {joint.name!r} has reversed limits {told}"
+    elif lower > _LARGEST or upper < -_LARGEST:
+        message = f"Joint {joint.name!r} has limits beyond any position, {told}"
     else:
-        return (lower or 0.0) * unit, (upper or 0.0) * unit
+        return lower * unit, upper * unit
     model.findings.append(
         Finding(
             code="W_IMPORT_LIMITS",

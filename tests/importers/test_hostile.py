@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from lxml import etree
 
 from articad.errors import ReadError
 from articad.export.mjcf import write_mjcf
+from articad.export.sdf import write_sdf
 from articad.export.urdf import write_urdf
 from articad.findings import MOST_CHARACTERS
 from articad.importers import reading, urdf
@@ -17,6 +21,7 @@ from articad.importers.mjcf import read_mjcf
 from articad.importers.sdf import read_sdf
 from articad.importers.urdf import read_urdf
 from tests.assemblies import geared_pair
+from tests.importers.test_doors import EVERYTHING
 
 LINKS = '<link name="a"/><link name="b"/>'
 BOMB = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
@@ -208,13 +213,23 @@ def test_a_hundred_thousand_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         read_urdf(tmp_path / "a.urdf")
 
 
-def test_missing_and_reversed_limits_are_endless_with_a_finding(tmp_path: Path) -> None:
-    for limit in ("", '<limit lower="1" upper="-1" effort="1" velocity="1"/>'):
-        (tmp_path / "a.urdf").write_text(joint(f'<axis xyz="0 0 1"/>{limit}'))
-        assembly = read_urdf(tmp_path / "a.urdf")
+@pytest.mark.parametrize("ends", [None, (1, -1), ("inf", "inf"), ("-inf", "-inf"), (1e13, 1e14), (-1e21, -1e20)])
+@pytest.mark.parametrize("kind", ["revolute", "prismatic"])
+def test_limits_that_are_missing_reversed_or_unreachable_are_endless_with_a_finding(kind: str, ends: Any, tmp_path: Path) -> None:
+    limit = "" if ends is None else '<limit lower="{}" upper="{}" effort="1" velocity="1"/>'.format(*ends)
+    (tmp_path / "a.urdf").write_text(joint(f'<axis xyz="0 0 1"/>{limit}', kind))
+    made = [read_urdf(tmp_path / "a.urdf")]
+    if ends is not None:
+        limit = "<limit><lower>{}</lower><upper>{}</upper></limit>".format(*ends)
+        inside = f"<parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz>{limit}</axis>"
+        (tmp_path / "a.sdf").write_text(
+            f'<sdf version="1.9"><model name="r">{LINKS}<joint name="j" type="{kind}">{inside}</joint></model></sdf>'
+        )
+        made.append(read_sdf(tmp_path / "a.sdf"))
 
-        assert assembly.findings.codes == ("W_IMPORT_LIMITS",)
-        assert assembly.joints[0].limits.upper == (float("inf"),)
+    for assembly in made:
+        assert "W_IMPORT_LIMITS" in assembly.findings.codes
+        assert (assembly.joints[0].limits.lower, assembly.joints[0].limits.upper) == ((-math.inf,), (math.inf,))
 
 
 def test_a_changed_record_is_refused_by_the_mechanism(tmp_path: Path) -> None:
@@ -253,3 +268,37 @@ def test_what_a_urdf_lacks_is_named_with_its_line_all_at_once(first: str, second
     assert len(messages) == len({first, second})
     assert all(any(LACKING[name][2] in message for message in messages) for name in (first, second)), messages
     assert all("line " in finding.where for finding in refused.value.findings)
+
+
+@pytest.mark.parametrize("wrong", ["", " ", "\t\n", "x", "1e999", "0 0", "-1"])
+@pytest.mark.parametrize("form", ["urdf", "sdf"])
+def test_any_statement_may_be_blank_or_wrong(form: str, wrong: str, tmp_path: Path) -> None:
+    """A file in which one attribute or one text is blank or wrong is read, or refused by its name."""
+    read, text = {"urdf": (read_urdf, EVERYTHING), "sdf": (read_sdf, _sdf(tmp_path))}[form]
+    file, refusals = tmp_path / f"changed.{form}", []
+    for changed in _each_changed(etree.fromstring(text.encode()), wrong):
+        file.write_bytes(changed)
+        try:
+            read(file)
+        except ReadError as error:
+            refusals.append(str(error))
+    assert refusals
+    assert [text for text in refusals if file.name not in text] == []
+
+
+def _sdf(folder: Path) -> str:
+    bundle = write_sdf(geared_pair())
+    bundle.write(folder)
+    return (folder / bundle.main).read_text()
+
+
+def _each_changed(document: etree._Element, wrong: str) -> Iterator[bytes]:
+    for element in document.iter("*"):
+        for name, value in element.attrib.items():
+            element.set(name, wrong)
+            yield etree.tostring(document)
+            element.set(name, value)
+        if (text := element.text) and text.strip():
+            element.text = wrong
+            yield etree.tostring(document)
+            element.text = text
