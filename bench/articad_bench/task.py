@@ -45,7 +45,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, Field, ValidationError
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
 
 from articad.bounds import TEXT_BYTES, TEXT_VALUES, values_in
 from articad.errors import ReadError, did_you_mean
@@ -55,6 +55,7 @@ from articad.processes import scratch
 from articad.runs.forms import misfit
 from articad_bench.checks import AnyCheck, Judgement
 from articad_bench.heading import judged, names_direction
+from articad_bench.plausible import plausible
 from articad_bench.subject import Subject
 
 TASKS: Final = Path(__file__).with_name("tasks")
@@ -96,6 +97,7 @@ def _is_name(text: str) -> str:
 
 
 _Name = Annotated[str, AfterValidator(_is_name)]
+_Checks = Annotated[tuple[AnyCheck, ...], BeforeValidator(plausible)]
 
 
 class TaskBudget(PlanObject):
@@ -125,7 +127,7 @@ class Edit(PlanObject):
     """
 
     prompt: str
-    checks: tuple[AnyCheck, ...]
+    checks: _Checks
     values: dict[str, float] = Field(default_factory=dict)
     reference: _Name | None = None
 
@@ -157,7 +159,7 @@ class Task(PlanObject):
     prompt: str = ""
     images: tuple[_Name, ...] = ()
     drawing: Drawing | None = None
-    checks: tuple[AnyCheck, ...]
+    checks: _Checks
     given: _Name | None = None
     edits: tuple[Edit, ...] = ()
     budget: TaskBudget | None = None

@@ -65,6 +65,35 @@ def test_a_task_has_no_name_that_is_a_place_elsewhere(name: str, task: Path) -> 
         read_task(task)
 
 
+@pytest.mark.parametrize(
+    ("check", "where"),
+    [
+        ({"kind": "clear_in_motion", "steps": 10**9}, "steps"),
+        ({"kind": "clear_in_motion", "steps": 0}, "steps"),
+        ({"kind": "certified", "seconds": float("inf")}, "seconds"),
+        ({"kind": "meshes", "teeth": [18, 0]}, "teeth.1"),
+        ({"kind": "room", "mm": [100, 1e-9, 100]}, "mm.1"),
+        ({"kind": "size", "mm": [None, 1e300, None]}, "mm.1"),
+        ({"kind": "size", "mm": [None, float("nan"), None]}, "mm.1"),
+        ({"kind": "joints", "joint": {"type": "slider", "span": [0, 10**400]}}, "joint.span.1"),
+    ],
+)
+@pytest.mark.parametrize("edited", [False, True])
+def test_numbers_that_let_a_judge_work_without_end_are_refused(check: dict[str, Any], where: str, edited: bool, task: Path) -> None:
+    asked = {"edits": [{"prompt": "another", "checks": [check]}]} if edited else {"checks": [check]}
+    (task / "task.json").write_text(json.dumps(TASK | asked))
+    with pytest.raises(ReadError, match=f"{where} of the check '{check['kind']}' is ") as error:
+        read_task(task)
+    assert len(error.value.message) < 400
+
+
+@pytest.mark.parametrize("checks", [None, {}, [None], [[1]], [{"kind": ["size"], "mm": 1}], [{"kind": {}, "mm": 1e99}], [{"1": 1}]])
+def test_checks_that_are_no_list_of_objects_are_refused(checks: Any, task: Path) -> None:
+    (task / "task.json").write_text(json.dumps(TASK | {"checks": checks}))
+    with pytest.raises(ReadError, match="checks"):
+        read_task(task)
+
+
 @pytest.mark.parametrize("kind", ["link", "pipe", "folder", "missing"])
 def test_a_picture_that_is_no_file_of_its_folder_is_refused(kind: str, task: Path, tmp_path: Path) -> None:
     (task / "task.json").write_text(json.dumps(TASK | {"images": ["a.png"]}))
