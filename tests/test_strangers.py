@@ -6,7 +6,9 @@ import ast
 import json
 import os
 from dataclasses import replace
+from functools import reduce
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -23,6 +25,7 @@ from articad.render.files import write_motion
 from articad.runs.run import Run, RunRequest
 from articad.simulation import examine
 from tests.chains import chain
+from tests.test_records import WRONG, changed, places
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no pipes in folders")
 SECRET = "the first words of a secret"
@@ -32,6 +35,35 @@ SECRET = "the first words of a secret"
 def test_a_batch_that_is_none_is_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / "batch.json").write_text(text, encoding="latin-1")
     with pytest.raises(ReadError):
+        read_batch(tmp_path / "batch.json")
+
+
+_BATCH: Any = {
+    "schema": "articad.batch/1",
+    "items": [{"plan": "plan.json", "values": {"width": 70.0}, "gates": ["rest"], "formats": ["urdf"], "kernel": "build123d"}],
+    "sample": [{"plan": "plan.json", "count": 2, "seed": 1, "parameters": {"width": [60, 120]}, "gates": ["motion"], "formats": ["mjcf"]}],
+}
+
+
+@pytest.mark.parametrize("wrong", [*WRONG, -1, "x", True, [[]], [None, None], float("nan")], ids=lambda wrong: repr(wrong)[:20])
+def test_a_wrong_value_anywhere_in_a_batch_is_refused_with_its_place(wrong: Any, tmp_path: Path) -> None:
+    (tmp_path / "plan.json").write_text((Path(articad.__file__).parent / "starter" / "plan.json").read_text())
+    file, refused = tmp_path / "batch.json", []
+    for place in places(_BATCH):
+        file.write_text(json.dumps(changed(_BATCH, place, wrong)))
+        try:
+            read_batch(file)
+        except ReadError as error:
+            refused.append((place, str(error)))
+    assert refused
+    assert [(place, said) for place, said in refused if wrong != "\ud800" and not all(step in said for step in place[:1])] == []
+
+
+@pytest.mark.parametrize(("where", "key"), [((), "item"), (("items", 0), "value"), (("sample", 0), "parameter")])
+def test_what_a_batch_names_wrongly_is_refused(where: tuple[Any, ...], key: str, tmp_path: Path) -> None:
+    row = reduce(lambda value, step: value[step], where, _BATCH)
+    (tmp_path / "batch.json").write_text(json.dumps(changed(_BATCH, where, {**row, key: 1})))
+    with pytest.raises(ReadError, match=rf"{key}: there is no such field"):
         read_batch(tmp_path / "batch.json")
 
 

@@ -4,24 +4,26 @@ from __future__ import annotations
 
 import itertools
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from pydantic import ValidationError
 from scipy.stats import qmc
 
 from articad.aliases import Json
 from articad.batches import pool
 from articad.batches.items import BatchItem
 from articad.batches.pool import MEMORY_GB, RETRIES, Told
+from articad.batches.specification import BatchFile, ItemRow, SampleRow, first_fault
 from articad.errors import ReadError
 from articad.files import PLAN_BYTES, read_file
 from articad.plan.schema import AssemblyPlan
+from articad.texts import SPOILED, spoiled
 
 MAKE_ITEM: Final = "articad.batches.items:make_stored"
 """The function that a worker calls for an item."""
-MOST_SAMPLES: Final = 100_000
 
 
 def read_batch(path: str | Path) -> list[BatchItem]:
@@ -36,34 +38,38 @@ def read_batch(path: str | Path) -> list[BatchItem]:
     """
     file = Path(path)
     try:
-        stored = json.loads(read_file(file, PLAN_BYTES))
-        rows = [
-            *stored.get("items", []),
-            *itertools.chain.from_iterable(_sampled(sample, file.parent) for sample in stored.get("sample", [])),
-        ]
-        return [BatchItem.from_json(row | ({"plan": str((file.parent / row["plan"]).resolve())} if "plan" in row else {})) for row in rows]
+        stored = _stored(read_file(file, PLAN_BYTES))
     except OSError as error:
         raise _refused(file, f"It cannot be read: {error.strerror}.") from error
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
-        raise _refused(file, f"It is not a valid batch: {repr(error)[:500]}.") from error
+    except ValidationError as error:
+        raise _refused(file, f"It is not a valid batch: {first_fault(error)}.") from error
+    except (ValueError, RecursionError) as error:
+        raise _refused(file, f"It is not a valid batch: {str(error)[:200]}.") from error
+    rows = [*stored.items, *itertools.chain.from_iterable(_sampled(sample, file) for sample in stored.sample)]
+    return [BatchItem.of(row.model_copy(update={"plan": str((file.parent / row.plan).resolve())})) for row in rows]
 
 
-def _sampled(sample: Mapping[str, Any], folder: Path) -> Iterator[Json]:
-    plan = AssemblyPlan.load(folder / sample["plan"])
-    ranges = sample.get("parameters") or {
-        parameter.name: (parameter.min, parameter.max)
-        for parameter in plan.parameters
-        if parameter.min is not None and parameter.max is not None
-    }
+def _stored(content: bytes) -> BatchFile:
+    document = json.loads(content)
+    if spoiled(document) is not None:
+        raise ValueError(f"it holds {SPOILED}")
+    return BatchFile.model_validate(document)
+
+
+def _sampled(sample: SampleRow, file: Path) -> Iterator[ItemRow]:
+    ranges = sample.parameters or _ranges_of(AssemblyPlan.load(file.parent / sample.plan))
     if not ranges:
-        raise ValueError("the plan gives no parameter a min and a max, so `parameters` must name ranges")
-    if not 0 < (count := int(sample["count"])) <= MOST_SAMPLES:
-        raise ValueError(f"count is {count}; the maximum is {MOST_SAMPLES}")
-    low, high = (np.array([float(bounds[end]) for bounds in ranges.values()]) for end in (0, 1))
-    points = low + qmc.LatinHypercube(len(ranges), rng=np.random.default_rng(int(sample.get("seed", 0)))).random(count) * (high - low)
-    common = {name: sample[name] for name in ("gates", "formats", "kernel") if name in sample}
+        raise _refused(file, f"The plan {sample.plan} gives no parameter numbers as min and max, so `parameters` must name ranges.")
+    low, high = np.array(list(ranges.values())).T
+    points = low + qmc.LatinHypercube(len(ranges), rng=np.random.default_rng(sample.seed)).random(sample.count) * (high - low)
+    common = {name: getattr(sample, name) for name in ("plan", "gates", "formats", "kernel")}
     for point in points:
-        yield {"plan": sample["plan"], "values": {name: round(float(x), 4) for name, x in zip(ranges, point, strict=True)}} | common
+        yield ItemRow(**common, values={name: round(float(x), 4) for name, x in zip(ranges, point, strict=True)})
+
+
+def _ranges_of(plan: AssemblyPlan) -> dict[str, tuple[float, float]]:
+    stated = ((parameter.name, parameter.min, parameter.max) for parameter in plan.parameters)
+    return {name: (low, high) for name, low, high in stated if isinstance(low, float) and isinstance(high, float)}
 
 
 def run_local(

@@ -14,11 +14,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final
+
+from pydantic import ValidationError
 
 from articad import __version__
 from articad.aliases import Json
 from articad.assembly import Assembly
+from articad.batches.specification import Gate, ItemRow, first_fault
 from articad.errors import ArticadError, ReadError
 from articad.files import PLAN_BYTES, SCRIPT_BYTES, read_file
 from articad.findings import Findings
@@ -28,8 +31,6 @@ from articad.kernels.kernel import PartKernel
 from articad.plan.schema import AssemblyPlan
 from articad.processes import scratch
 from articad.runs.run import digest
-
-Gate = Literal["rest", "motion", "certified"]
 
 SCHEMA: Final = "articad.item/1"
 ITEM: Final = "item.json"
@@ -86,21 +87,16 @@ class BatchItem:
             ReadError: If it does not have the form; the message says what is wrong.
         """
         try:
-            item = cls(
-                plan=str(stored["plan"]),
-                values={str(name): float(value) for name, value in stored.get("values", {}).items()},
-                gates=tuple(stored.get("gates", ("rest",))),
-                formats=tuple(stored.get("formats", ("urdf", "mjcf"))),
-                kernel=stored.get("kernel"),
-            )
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            return cls.of(ItemRow.model_validate(stored))
+        except ValidationError as error:
             raise _refused(
-                Path("items"), f"An item needs `plan`, and may have `values`, `gates`, `formats`, `kernel`: {error!r}."
+                Path("items"), f"An item needs `plan`, and may have `values`, `gates`, `formats`, `kernel`: {first_fault(error)}."
             ) from error
-        unknown = [*(gate for gate in item.gates if gate not in ("rest", "motion", "certified")), *(set(item.formats) - set(NAMED))]
-        if unknown:
-            raise _refused(Path("items"), f"There is no {unknown[0]!r}; gates are rest, motion, certified; formats {', '.join(NAMED)}.")
-        return item
+
+    @classmethod
+    def of(cls, row: ItemRow) -> BatchItem:
+        """Return the item of a row."""
+        return cls(row.plan, row.values, row.gates, row.formats, row.kernel)
 
 
 def make(item: BatchItem, out: str | Path) -> Json:

@@ -158,9 +158,10 @@ def test_the_command_makes_a_batch_and_says_what_came_of_it(plan: Path, tmp_path
 @pytest.mark.parametrize(
     ("row", "words"),
     [
-        ({}, "needs `plan`"),
-        ({"plan": ".", "gates": ["sealed"]}, "no 'sealed'"),
-        ({"plan": ".", "values": {"a": "x"}}, "may have `values`"),
+        ({}, r"items.0.plan: it is missing"),
+        ({"plan": ".", "gates": ["sealed"]}, "items.0.gates.0: .*'rest', 'motion' or 'certified'"),
+        ({"plan": ".", "formats": ["urd"]}, "items.0.formats.0: .*Did you mean 'urdf'"),
+        ({"plan": ".", "values": {"a": "x"}}, "items.0.values.a: .*number"),
     ],
 )
 def test_a_wrong_item_is_told(row: Json, words: str, tmp_path: Path) -> None:
