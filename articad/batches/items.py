@@ -11,6 +11,7 @@ import hashlib
 import json
 import time
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from pathlib import Path
@@ -23,16 +24,18 @@ from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.batches.specification import Gate, ItemRow, first_fault
 from articad.errors import ArticadError, ReadError
-from articad.files import PLAN_BYTES, SCRIPT_BYTES, read_file
+from articad.files import PLAN_BYTES, RECORD_BYTES, SCRIPT_BYTES, read_file
 from articad.findings import Findings
 from articad.formats import NAMED
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import PartKernel
 from articad.plan.schema import AssemblyPlan
 from articad.processes import scratch
+from articad.runs.forms import FINDING, misfit
 from articad.runs.run import digest
 
 SCHEMA: Final = "articad.item/1"
+_KEPT: Final = {"schema": frozenset({SCHEMA}), "digest": str, "ok": bool, "findings": [FINDING], "files?": {str: str}, "error?": str}
 ITEM: Final = "item.json"
 STEPS: Final = 24  # poses of each driver for the gate "motion"
 BUDGET_S: Final = 60.0  # for the gate "certified"
@@ -100,7 +103,7 @@ class BatchItem:
 
 
 def make(item: BatchItem, out: str | Path) -> Json:
-    """Make one item, unless it already exists.
+    """Make one item, unless it is already there with all its files as they were written; what is there otherwise is replaced.
 
     Args:
         item: What to make.
@@ -111,12 +114,28 @@ def make(item: BatchItem, out: str | Path) -> Json:
         and `made`, which is "now" or "before".
     """
     folder = Path(out) / item.digest[:2] / item.digest
-    with contextlib.suppress(OSError, ValueError):
-        return {**json.loads(read_file(folder / ITEM, PLAN_BYTES, root=folder)), "made": "before"}
-    with scratch.folder_beside(folder) as empty:
+    if (kept := _kept(folder, item.digest)) is not None:
+        return {**kept, "made": "before"}
+    with ExitStack() as stack:
+        if folder.exists():
+            stack.enter_context(scratch.set_aside(folder))()
+        empty = stack.enter_context(scratch.folder_beside(folder))
         record = _made(item, empty)
         (empty / ITEM).write_text(json.dumps(record, indent=1, ensure_ascii=False, sort_keys=True) + "\n", encoding="utf-8")
     return {**record, "made": "now"}
+
+
+def _kept(folder: Path, digest: str) -> Json | None:
+    """Return the record of an item that is there; None if it is not, or if one of its files is not what was written."""
+    try:
+        record = json.loads(read_file(folder / ITEM, PLAN_BYTES, root=folder))
+        if misfit(record, _KEPT) or record["digest"] != digest:
+            return None
+        files: Mapping[str, str] = record.get("files", {})
+        whole = all(hashlib.sha256(read_file(folder / name, RECORD_BYTES, root=folder)).hexdigest() == sha for name, sha in files.items())
+    except (OSError, ValueError, RecursionError):
+        return None
+    return dict(record) if whole else None
 
 
 def make_stored(item: Json, out: str) -> Json:

@@ -62,6 +62,34 @@ def test_an_item_is_checked_exported_and_not_made_twice(plan: Path, tmp_path: Pa
     assert first["kernel_version"]
 
 
+@pytest.mark.parametrize(
+    "damage", ["a file is gone", "a file is changed", "a file is a link", "no JSON", "another item", "no record", "deep"]
+)
+def test_an_item_that_is_not_what_was_written_is_made_again(damage: str, plan: Path, tmp_path: Path) -> None:
+    (item,) = lifts(plan, 1.0, formats=("urdf",))
+    first = make(item, tmp_path)
+    folder = tmp_path / item.digest[:2] / item.digest
+    file = folder / next(iter(first["files"]))
+    if damage == "a file is changed":
+        file.write_bytes(file.read_bytes() + b" ")
+    elif damage == "a file is gone":
+        file.unlink()
+    elif damage == "a file is a link":
+        file.rename(tmp_path / "elsewhere")
+        file.symlink_to(tmp_path / "elsewhere")
+    else:
+        record = json.loads((folder / ITEM).read_text())
+        texts = {"another item": json.dumps(record | {"digest": "0" * 64}), "no record": "{}", "deep": "[" * 100_000}
+        (folder / ITEM).write_text(texts.get(damage, "{"))
+
+    again = make(item, tmp_path)
+
+    assert (again["made"], again["files"]) == ("now", first["files"])
+    assert make(item, tmp_path)["made"] == "before"
+    assert {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in first["files"]} == first["files"]
+    assert [path.name for path in folder.parent.iterdir()] == [item.digest]
+
+
 def test_what_a_gate_refuses_is_kept_without_exports(plan: Path, tmp_path: Path) -> None:
     (item,) = lifts(plan, -1.0)
 
