@@ -379,7 +379,7 @@ def test_an_include_that_leads_out_of_the_root_or_round_is_refused(tmp_path: Pat
             '<link name="a"/><joint name="j" type="revolute"><parent>world</parent><child>a</child><axis><xyz>0 0 0</xyz></axis></joint>',
             "no direction",
         ),
-        ('<link name="a"><inertial><mass>heavy</mass></inertial></link>', "not a number"),
+        ('<link name="a"><inertial><mass>heavy</mass></inertial></link>', "'heavy', not a plausible number"),
         ("", "no link"),
         ('<sdf version="1.6"><model><link name="a"/></model></sdf>', "<model> has no name"),
         ('<sdf version="one"><model name="m"><link name="a"/></model></sdf>', "not a version"),
