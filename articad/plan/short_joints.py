@@ -133,11 +133,11 @@ class Joints:
 
 def _write_out(joint: Json, source: Json) -> None:
     """Replace a derived joint by one with the source's fields but those that it states; a mirror image turns the other way."""
-    turned = joint["derive"].get("op") == "mirror"
-    if turned and source["type"] not in ("fixed", "revolute", "slider"):
+    turned, kind = joint["derive"].get("op") == "mirror", source.get("type")
+    if turned and kind not in ("fixed", "revolute", "slider"):
         return  # stays derived, and the plan's check refuses it
     image = copy.deepcopy(source)
-    if turned and source["type"] == "revolute":
+    if turned and kind == "revolute":
         if isinstance(limits := image.get("angle_deg"), list):
             image["angle_deg"] = [_negative(value) for value in reversed(limits)]
         if "rest_deg" in image:

@@ -7,6 +7,7 @@ import copy
 import json
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -236,6 +237,20 @@ def test_a_derived_joint_of_a_part_that_is_no_copy_gets_the_image_of_the_place_a
     (other,) = next(joint.columns for joint in resolved.joints if joint.name == "other")
     assert [math.degrees(other.lower), math.degrees(other.upper)] == pytest.approx([-90, 0])
     assert not [finding for finding in check_plan(AssemblyPlan.from_json(plan)) if finding.severity == "error"]
+
+
+@pytest.mark.parametrize("missing", [key for key in GATE["joints"]["swing"] if key != "length_mm"])
+def test_a_derived_joint_whose_source_lacks_a_field_is_written_out_or_refused_by_the_plan(missing: str) -> None:
+    """The image is a leaf of its own on a copy of the bracket, so the joint is written in full."""
+    plan = copy.deepcopy(GATE)
+    plan["parts"]["bracket"] = {"material": "oak", "dimensions": "width = 20, height = 8", "rest_pose": {"at": [0, 0, 1]}}
+    plan["parts"]["bracket_r"] = {"derive": plan["parts"]["twin"]["derive"] | {"from": "bracket"}}
+    plan["parts"]["leaf_r"] = plan["parts"].pop("twin") and copy.deepcopy(plan["parts"]["leaf"])
+    plan["joints"]["swing"]["parent"] = "bracket"
+    plan["joints"]["other"] |= {"parent": "bracket_r", "child": "leaf_r"}
+    del plan["joints"]["swing"][missing]
+    with suppress(PlanError):
+        check_plan(AssemblyPlan.from_json(plan))
 
 
 def test_what_is_wrong_in_a_short_plan_is_reported_at_its_address() -> None:
