@@ -67,6 +67,15 @@ def test_what_a_batch_names_wrongly_is_refused(where: tuple[Any, ...], key: str,
         read_batch(tmp_path / "batch.json")
 
 
+def test_a_sample_of_bounds_that_are_expressions_is_refused(tmp_path: Path) -> None:
+    plan = json.loads((Path(articad.__file__).parent / "starter" / "plan.json").read_text())
+    plan["parameters"][0] |= {"min": "1 + 1", "max": 900}
+    (tmp_path / "plan.json").write_text(json.dumps(plan))
+    (tmp_path / "batch.json").write_text('{"sample": [{"plan": "plan.json", "count": 2}]}')
+    with pytest.raises(ReadError, match=r"min or max of .width. is an expression"):
+        read_batch(tmp_path / "batch.json")
+
+
 @pytest.mark.parametrize("count", ["1000000000000", "1e308", "-1", "0"])
 def test_a_batch_of_more_samples_than_reason_is_refused(count: str, tmp_path: Path) -> None:
     (tmp_path / "plan.json").write_text((Path(articad.__file__).parent / "starter" / "plan.json").read_text())

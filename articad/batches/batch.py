@@ -57,9 +57,9 @@ def _stored(content: bytes) -> BatchFile:
 
 
 def _sampled(sample: SampleRow, file: Path) -> Iterator[ItemRow]:
-    ranges = sample.parameters or _ranges_of(AssemblyPlan.load(file.parent / sample.plan))
+    ranges = sample.parameters or _ranges_of(AssemblyPlan.load(file.parent / sample.plan), file)
     if not ranges:
-        raise _refused(file, f"The plan {sample.plan} gives no parameter numbers as min and max, so `parameters` must name ranges.")
+        raise _refused(file, f"The plan {sample.plan} gives no parameter a min and a max, so `parameters` must name ranges.")
     low, high = np.array(list(ranges.values())).T
     points = low + qmc.LatinHypercube(len(ranges), rng=np.random.default_rng(sample.seed)).random(sample.count) * (high - low)
     common = {name: getattr(sample, name) for name in ("plan", "gates", "formats", "kernel")}
@@ -67,9 +67,15 @@ def _sampled(sample: SampleRow, file: Path) -> Iterator[ItemRow]:
         yield ItemRow(**common, values={name: round(float(x), 4) for name, x in zip(ranges, point, strict=True)})
 
 
-def _ranges_of(plan: AssemblyPlan) -> dict[str, tuple[float, float]]:
-    stated = ((parameter.name, parameter.min, parameter.max) for parameter in plan.parameters)
-    return {name: (low, high) for name, low, high in stated if isinstance(low, float) and isinstance(high, float)}
+def _ranges_of(plan: AssemblyPlan, file: Path) -> dict[str, tuple[float, float]]:
+    ranges: dict[str, tuple[float, float]] = {}
+    for parameter in plan.parameters:
+        low, high = parameter.min, parameter.max
+        if isinstance(low, str) or isinstance(high, str):
+            raise _refused(file, f"The min or max of {parameter.name!r} is an expression, so `parameters` must name ranges.")
+        if low is not None and high is not None:
+            ranges[parameter.name] = (low, high)
+    return ranges
 
 
 def run_local(

@@ -11,7 +11,6 @@ import hashlib
 import json
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from pathlib import Path
@@ -116,7 +115,7 @@ def make(item: BatchItem, out: str | Path) -> Json:
     folder = Path(out) / item.digest[:2] / item.digest
     if (kept := _kept(folder, item.digest)) is not None:
         return {**kept, "made": "before"}
-    with ExitStack() as stack:
+    with contextlib.ExitStack() as stack:
         if folder.exists():
             stack.enter_context(scratch.set_aside(folder))()
         empty = stack.enter_context(scratch.folder_beside(folder))

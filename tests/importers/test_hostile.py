@@ -219,6 +219,7 @@ def test_limits_that_are_missing_reversed_or_unreachable_are_endless_with_a_find
     limit = "" if ends is None else '<limit lower="{}" upper="{}" effort="1" velocity="1"/>'.format(*ends)
     (tmp_path / "a.urdf").write_text(joint(f'<axis xyz="0 0 1"/>{limit}', kind))
     made = [read_urdf(tmp_path / "a.urdf")]
+    assert made[0].findings.codes == ("W_IMPORT_LIMITS",)
     if ends is not None:
         limit = "<limit><lower>{}</lower><upper>{}</upper></limit>".format(*ends)
         inside = f"<parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz>{limit}</axis>"
